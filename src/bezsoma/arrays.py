@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The array types that signatures speak of; shapes stand in the docstrings."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+T = TypeVar("T", bound=np.generic)
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Bools = npt.NDArray[np.bool_]
+Numbers = npt.NDArray[Any]
+"""float64, or objects such as `fractions.Fraction` where a function is also exact."""
+
+
+def frozen(array: npt.NDArray[T]) -> npt.NDArray[T]:
+    """The same array, made read-only: what frozen dataclasses hold and caches hand out."""
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What can go wrong, said so that the reader knows what to do.
+
+A message says what was given, why it cannot work and what can. Input is checked once, at the
+boundary; below it nothing is checked again.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+
+class BezSomaError(Exception):
+    """The root of every error that BezSoma raises on purpose."""
+
+
+class InputError(BezSomaError, ValueError):
+    """What was asked for cannot be done; the message says why and what can."""
+
+
+class MeshError(InputError):
+    """The mesh is damaged or does not fit; the message names the tets or points."""
+
+
+class NotConverged(BezSomaError):
+    """An iteration stopped short of its tolerance; `history` holds the residual of each step."""
+
+    def __init__(self, message: str, history: Sequence[float] = ()) -> None:
+        super().__init__(message)
+        self.history = tuple(history)
+
+
+class MissingExtra(BezSomaError, ImportError):
+    """An optional package is not installed; the message has the line that installs it."""
+
+
+def unknown(kind: str, given: object, known: Iterable[Any], of: str) -> str:
+    """The sentence for a name that is not there, with the nearest that is.
+
+    >>> print(unknown("surface", "skim", ["skin", "bone"], "this mesh"))
+    no surface 'skim'; this mesh has ['bone', 'skin'] (did you mean 'skin'?)
+    >>> print(unknown("surface", "x", [], "this mesh"))
+    no surface 'x'; this mesh has none
+    """
+    names = sorted(str(name) for name in known)
+    near = difflib.get_close_matches(str(given), names, n=1)
+    hint = f" (did you mean {near[0]!r}?)" if near else ""
+    return f"no {kind} {given!r}; {of} has {names if names else 'none'}{hint}"
