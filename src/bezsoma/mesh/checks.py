@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a mesh is refused for, and the sentences that say so.
+
+Each function takes what the user gave and hands back the arrays that the mesh will hold, or
+raises `MeshError`. Numbers in the messages are the user's own, from before unused points are
+dropped. Coincident points are accepted: a mesh that is not welded is legal, and comes apart in
+the check for rigid motions, which names the loose part.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from bezsoma.arrays import Bools, Floats, Ints, Numbers
+from bezsoma.errors import MeshError
+from bezsoma.mesh.shape import FLAT, LARGEST, flat_tets, heights_and_lengths
+from bezsoma.mesh.topology import Simplices
+
+
+def listed(numbers: npt.ArrayLike, first: int = 4) -> str:
+    """The first few numbers, and how many more there are.
+
+    >>> listed([3, 5]), listed(range(9))
+    ('3 and 5', '0, 1, 2, 3 and 5 more')
+    """
+    known = [str(number) for number in np.asarray(numbers).ravel()]
+    if len(known) > first:
+        known = [*known[:first], f"{len(known) - first} more"]
+    return " and ".join([", ".join(known[:-1]), known[-1]] if len(known) > 1 else known)
+
+
+def point_array(given: npt.ArrayLike) -> Floats:
+    """The points (v, 3) in mm as a fresh float64 array."""
+    array = _array(given, "points")
+    if array.ndim != 2 or array.shape[1] != 3:
+        flat = " (2-D points: add a third coordinate)" if array.shape[1:] == (2,) else ""
+        raise MeshError(f"points have the shape {array.shape}; (v, 3) in mm is needed{flat}")
+    if array.dtype.kind not in "fiu":
+        raise MeshError(f"points are of type {array.dtype}; real numbers (mm) are needed")
+    points = np.array(array, dtype=np.float64)
+    with np.errstate(invalid="ignore"):
+        bad = np.flatnonzero(~(np.abs(points) <= LARGEST).all(axis=1))
+    if len(bad):
+        raise MeshError(
+            f"{_many(bad, 'point')} {listed(bad)}: the coordinates of point {bad[0]} are "
+            f"{points[bad[0]].tolist()}; every coordinate must be a finite number of mm "
+            f"(at most {LARGEST:g})"
+        )
+    return points
+
+
+def tet_array(given: npt.ArrayLike, count: int) -> Ints:
+    """The tets (t, 4), every row ascending; `count` points were given."""
+    tets = index_rows(given, 4, count, "tet", "point")
+    if not len(tets):
+        raise MeshError("the mesh has no tets; at least one row of four vertex numbers is needed")
+    return tets
+
+
+def index_rows(given: npt.ArrayLike, width: int, count: int, what: str, of: str) -> Ints:
+    """Rows (r, width) of distinct numbers below `count`, each row ascending.
+
+    >>> index_rows([[2, 0, 1]], 3, 5, "facet", "point")
+    array([[0, 1, 2]])
+    """
+    array = _array(given, f"{what}s")
+    if array.size == 0:
+        return np.zeros((0, width), np.int64)
+    if array.ndim != 2 or array.shape[1] != width:
+        raise MeshError(
+            f"{what}s have the shape {array.shape}; (n, {width}) is needed: "
+            f"a row of {width} {of} numbers for each {what}"
+        )
+    numbers = index_array(array, count, f"{what}s", of)
+    rows = np.sort(numbers, axis=1)
+    twice = np.flatnonzero((rows[:, 1:] == rows[:, :-1]).any(axis=1))
+    if len(twice):
+        raise MeshError(
+            f"{_many(twice, what)} {listed(twice)}: {what} {twice[0]} is "
+            f"{numbers[twice[0]].tolist()} and has the same {of} twice; remove it"
+        )
+    return rows
+
+
+def index_array(given: npt.ArrayLike, count: int, what: str, of: str) -> Ints:
+    """Numbers of `of`s, 0 to count - 1, as fresh int64."""
+    array = _array(given, what)
+    if array.size == 0:
+        return np.zeros(array.shape, np.int64)
+    if array.dtype.kind not in "iu":
+        raise MeshError(
+            f"{what} hold numbers of type {array.dtype}{_fractions(array)}; {of} numbers are "
+            f"whole numbers, 0 to {count - 1}: give an array of integers (.astype(int))"
+        )
+    outside = (array < 0) | (array >= count)
+    if outside.any():
+        rows = np.flatnonzero(outside.reshape(len(array), -1).any(axis=1))
+        value = array[outside][0]
+        one = " (numbers start at 0, not at 1)" if value == count else ""
+        raise MeshError(
+            f"{what} name {of} {value} (in row {listed(rows)}), but there are {count} {of}s, "
+            f"numbered 0 to {count - 1}{one}"
+        )
+    return np.array(array, dtype=np.int64)
+
+
+def region_names(given: Sequence[str]) -> tuple[str, ...]:
+    """The names of the regions, each once."""
+    if isinstance(given, str):
+        raise MeshError(f"regions is the text {given!r}; a sequence is needed: ({given!r},)")
+    names = tuple(given)
+    if not names:
+        raise MeshError("regions is empty; at least one name is needed, such as ('tissue',)")
+    for name in names:
+        place_name(name, "region")
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise MeshError(f"the region name {twice[0]!r} is given twice; each region needs its own")
+    return names
+
+
+def region_array(given: npt.ArrayLike | None, tets: int, names: tuple[str, ...]) -> Ints:
+    """The region (t,) of each tet, an index into `names`."""
+    if given is None:
+        return np.zeros(tets, np.int64)
+    array = _array(given, "region")
+    if array.shape != (tets,):
+        raise MeshError(
+            f"region has the shape {array.shape}, but there are {tets} tets; "
+            f"one region number a tet is needed: the shape ({tets},)"
+        )
+    return index_array(array, len(names), f"region numbers (regions: {list(names)})", "region")
+
+
+def shape(points: Floats, tets: Ints) -> Ints:
+    """The orientation (t,) of every tet, +1 or -1; flat ones are refused."""
+    signs, flat = flat_tets(points, tets)
+    bad = np.flatnonzero(flat)
+    if len(bad):
+        worst = tets[bad[0]]
+        height, length = heights_and_lengths(points[worst][None])
+        raise MeshError(
+            f"{len(bad)} of {len(tets)} tets are flat: tet {listed(bad)}. Tet {bad[0]} (vertices "
+            f"{worst.tolist()}) has the height {height[0]:.3g} mm and a longest edge of "
+            f"{length[0]:.3g} mm, a ratio below {FLAT:g}; a tet needs a volume: collapse or "
+            f"remove it, or mesh again{_coincident(points, worst)}"
+        )
+    return signs
+
+
+def topology(faces: Simplices, pairs: Ints, tets: Ints, signs: Ints, names: Ints) -> None:
+    """Refuse tets listed twice, faces shared by three, and folds; `names` are point numbers."""
+    _listed_twice(faces, tets, names)
+    crowded = np.flatnonzero(faces.counts > 2)
+    if len(crowded):
+        end = np.cumsum(faces.counts)[crowded[0]]
+        around = faces.incidences[end - faces.counts[crowded[0]] : end] // 4
+        raise MeshError(
+            f"the face with vertices {names[faces.rows[crowded[0]]].tolist()} is shared by "
+            f"{len(around)} tets ({listed(around)}){_others(crowded)}; a face separates at most "
+            "two: tets overlap there, remove the wrong ones or mesh again"
+        )
+    _folds(faces, pairs, tets, signs, names)
+
+
+def _listed_twice(faces: Simplices, tets: Ints, names: Ints) -> None:
+    """Equal rows have the same first face and the same last vertex."""
+    keys = faces.of_tet[:, 3] * (int(tets.max()) + 1) + tets[:, 3]
+    order = np.argsort(keys, kind="stable")
+    same = np.flatnonzero(keys[order][1:] == keys[order][:-1])
+    if len(same):
+        first, again = order[same[0]], order[same[0] + 1]
+        raise MeshError(
+            f"tets {first} and {again} are the same, vertices {names[tets[first]].tolist()}"
+            f"{_others(same)}; a tet may be listed once only: remove the copies"
+        )
+
+
+def _folds(faces: Simplices, pairs: Ints, tets: Ints, signs: Ints, names: Ints) -> None:
+    """Two tets on one side of their face: moving vertex i to the front gives the sign (-1)^i."""
+    side = (signs[:, None] * np.array([1, -1, 1, -1])).ravel()
+    shared = np.flatnonzero(pairs[:, 1] >= 0)
+    ends = np.cumsum(faces.counts)[shared]
+    folded = shared[side[faces.incidences[ends - 1]] == side[faces.incidences[ends - 2]]]
+    if len(folded):
+        a, b = pairs[folded[0]]
+        raise MeshError(
+            f"tets {a} and {b} lie on the same side of the face they share, vertices "
+            f"{names[faces.rows[folded[0]]].tolist()}{_others(folded)}: the mesh is folded over "
+            "itself there; move the vertex that was pushed through, or mesh again"
+        )
+
+
+def place_name(name: object, kind: str) -> str:
+    """A name that can be read back: text, not blank, nothing around it."""
+    if not isinstance(name, str) or not name or name != name.strip() or not name.isprintable():
+        raise MeshError(
+            f"{name!r} cannot name a {kind}; a name is text that is not blank, on one line and "
+            "without space at its ends"
+        )
+    return name
+
+
+def one_namespace(**kinds: Mapping[str, object]) -> None:
+    """Refuse a name that two kinds of places bear: a support could not tell which is meant."""
+    seen: dict[str, str] = {}
+    for kind, places in kinds.items():
+        for name in places:
+            if place_name(name, kind) in seen:
+                raise MeshError(
+                    f"{name!r} names a {seen[name]} place and a {kind} place; surfaces, edges "
+                    "and vertices share their names: rename one"
+                )
+            seen[name] = kind
+
+
+def members(found: Bools, rows: Ints, name: str, kind: str, why: str) -> None:
+    """Refuse an empty place, rows that are not in the mesh, and rows listed twice."""
+    if not len(rows):
+        raise MeshError(f"{kind} {name!r} is empty; leave it out or give it at least one row")
+    wrong = np.flatnonzero(~found)
+    if len(wrong):
+        raise MeshError(
+            f"{kind} {name!r}: row {listed(wrong)} (first: {rows[wrong[0]].tolist()}) {why}"
+        )
+    _, counts = np.unique(rows, axis=0, return_counts=True)
+    if (counts > 1).any():
+        raise MeshError(
+            f"{kind} {name!r}: {int((counts > 1).sum())} of its rows are listed more than once; "
+            "loads on them would count twice: give every row once"
+        )
+
+
+def _array(given: npt.ArrayLike, what: str) -> Numbers:
+    try:
+        array = np.asarray(given)
+    except (ValueError, TypeError) as error:
+        raise MeshError(
+            f"{what} cannot be made into an array ({error}); rows of equal length are needed"
+        ) from error
+    return array
+
+
+def _fractions(array: Numbers) -> str:
+    if array.dtype.kind != "f":
+        return ""
+    values = array.astype(np.float64)
+    bad = values[values != np.floor(values)]
+    return f" (such as {bad[0]:g})" if len(bad) else ""
+
+
+def _coincident(points: Floats, vertices: Ints) -> str:
+    for i, a in enumerate(vertices):
+        for b in vertices[i + 1 :]:
+            if (points[a] == points[b]).all():
+                return f" (vertices {a} and {b} lie at the same place)"
+    return ""
+
+
+def _many(bad: Ints, what: str) -> str:
+    return what if len(bad) == 1 else f"{len(bad)} {what}s:"
+
+
+def _others(bad: Ints) -> str:
+    return "" if len(bad) == 1 else f" (and {len(bad) - 1} more such places)"

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where real data lies, and what happens to the tests that need it where there is none."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+DATA = Path(os.environ.get("BEZSOMA_DATA") or ROOT.parent / "shared" / "data")
+NO_DATA = f"needs real data, and there is none at {DATA}: set BEZSOMA_DATA to where it lies"
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Skip what needs real data where it is absent, or stop where it has to be there."""
+    if DATA.is_dir():
+        return
+    if os.environ.get("BEZSOMA_DATA_REQUIRED"):
+        raise pytest.UsageError(f"BEZSOMA_DATA_REQUIRED is set, and there is no data at {DATA}")
+    for item in items:
+        if item.get_closest_marker("real_data"):
+            item.add_marker(pytest.mark.skip(reason=NO_DATA))
+
+
+@pytest.fixture(scope="session")
+def data() -> Path:
+    """The folder with the real data."""
+    if not DATA.is_dir():
+        pytest.skip(NO_DATA)
+    return DATA
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The folder of the project."""
+    return ROOT

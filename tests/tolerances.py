@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How close is close enough, in one place, so that no test loosens its own.
+
+All are relative to the size of what is compared unless said otherwise. A test that needs another
+number says why beside it.
+"""
+
+from __future__ import annotations
+
+ROUNDING = 1e-13
+"""Two ways to write the same sum of a few terms."""
+
+CLOSED_FORM = 1e-12
+"""A formula in floating point against the same in exact fractions."""
+
+TWIN = 1e-10
+"""The same mesh, degree and equations by another code, each solved directly."""
+
+INVARIANCE = 1e-9
+"""The same body in another order, frame, place or unit, solved directly."""
+
+RIGID = 1e-13
+"""An eigenvalue that belongs to a rigid motion, relative to the largest."""
+
+RATE_SLACK = 0.15
+"""How far a measured rate of convergence may stay below the theory's (absolute)."""
+
+ITERATIVE = 1e-6
+"""A displacement from conjugate gradients stopped at 1e-10, against the direct solver."""
+
+
+def patch(degree: int) -> float:
+    """How exactly a polynomial of that degree has to come back from a solve."""
+    return 1e-12 if degree <= 8 else 1e-10
