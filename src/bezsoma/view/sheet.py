@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A page of pictures: panels with captions, sides marked, scale and colour bars; PNG bytes.
+
+Drawn on figure objects of their own (Agg), never through matplotlib's global state, so that a
+picture made inside somebody's notebook or thread changes nothing there. One pixel of a panel is
+one pixel of the page.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import floor, log10
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, Rectangle
+from matplotlib.ticker import MaxNLocator
+
+from bezsoma import __version__
+from bezsoma.arrays import Floats
+from bezsoma.errors import InputError, unknown
+from bezsoma.view.camera import Camera
+from bezsoma.view.layout import Layout
+
+INK, PALE = "#22262b", "#7a828c"
+NOTICE = "Research software, not a medical device."
+_DPI = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Bar:
+    """A colour bar: what it measures with its unit, and the values at its two ends."""
+
+    label: str
+    limits: tuple[float, float]
+    table: Floats
+    levels: Floats
+    """Where it carries ticks and the picture thin lines."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A silhouette to be drawn as a line: the part (h, w) of each pixel that is covered."""
+
+    coverage: Floats
+    label: str
+    colour: str
+    dashed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One picture on the page."""
+
+    colours: Floats
+    """(h, w, 3) from 0 to 1."""
+    camera: Camera
+    caption: str
+    bar: Bar | None = None
+    outlines: tuple[Outline, ...] = ()
+
+
+def colours(name: str, darkest: float = 0.06) -> Floats:
+    """The 256 colours (256, 3) of one of matplotlib's maps, as far as shape shows in them.
+
+    Equal steps of a value look equal in viridis, cividis, magma, inferno, plasma and their
+    reverses (`_r`), also in grey; most others invent edges or hide them. No light and shade is
+    seen on what is almost black, so the dark end with luminance below `darkest` is left out and
+    the rest stretched, which keeps equal steps equal.
+
+    >>> luminance = colours("magma_r") ** 2.2 @ [0.2126, 0.7152, 0.0722]
+    >>> bool(luminance.min() > 0.05), bool((np.diff(luminance) < 0).all())
+    (True, True)
+    """
+    if name not in colormaps:
+        raise InputError(unknown("colour map", name, colormaps, "matplotlib"))
+    full = np.asarray(colormaps[name](np.linspace(0, 1, 256)), float)[:, :3]
+    bright = np.flatnonzero(full**2.2 @ np.array([0.2126, 0.7152, 0.0722]) >= darkest)
+    if not len(bright):
+        raise InputError(f"colour map {name!r} is almost black; 'viridis' and 'magma_r' are not")
+    place = np.linspace(bright[0], bright[-1], 256)
+    return np.stack([np.interp(place, np.arange(256), channel) for channel in full.T], axis=1)
+
+
+def round_levels(low: float, high: float, most: int = 7) -> Floats:
+    """Round numbers strictly inside an interval, evenly spaced.
+
+    >>> round_levels(0.0, 5.3).tolist()
+    [1.0, 2.0, 3.0, 4.0, 5.0]
+    """
+    ticks = np.asarray(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
+    margin = 1e-9 * (high - low)
+    return ticks[(ticks > low + margin) & (ticks < high - margin)]
+
+
+def scale_length(mm: float) -> float:
+    """The longest of 1, 2, 5, 10, ... mm that is at most the length given.
+
+    >>> [scale_length(x) for x in (34.0, 50.0, 0.7, 1999.0)]
+    [20.0, 50.0, 0.5, 1000.0]
+    """
+    power = 10.0 ** floor(log10(mm))
+    return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= mm * (1 + 1e-12))
+
+
+def sheet(panels: Sequence[Panel], layout: Layout, title: str = "") -> Figure:
+    """The page as a figure; its axes are the panels, each with a colour bar after it if any."""
+    width, height = layout.size
+    figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
+    FigureCanvasAgg(figure)
+    for number, panel in enumerate(panels):
+        _draw(figure, layout, number, panel)
+    points = layout.unit * 72 / _DPI
+    if layout.title:
+        y = 1 - 34 * layout.unit / height
+        figure.text(
+            0.5, y, title, size=25 * points, color=INK, weight="bold", ha="center", va="center"
+        )
+    note = f"bezsoma {__version__}.  {NOTICE}"
+    figure.text(
+        1 - 20 * layout.unit / width,
+        16 * layout.unit / height,
+        note,
+        size=13 * points,
+        color=PALE,
+        ha="right",
+        va="center",
+    )
+    return figure
+
+
+def png(figure: Figure, title: str = "") -> bytes:
+    """The page as a PNG file; it names the software, and neither a person nor a date."""
+    stream = io.BytesIO()
+    software = f"bezsoma {__version__}. {NOTICE}"
+    figure.savefig(stream, format="png", metadata={"Software": software, "Title": title or None})
+    return stream.getvalue()
+
+
+def _axes(figure: Figure, left: float, top: float, width: float, height: float) -> Axes:
+    """Axes at pixels of the page, counted from its upper left."""
+    across, down = figure.get_size_inches() * _DPI
+    return figure.add_axes(
+        (left / across, 1 - (top + height) / down, width / across, height / down)
+    )
+
+
+def _draw(figure: Figure, layout: Layout, number: int, panel: Panel) -> None:
+    """One panel: picture, caption, outlines, marks and bars."""
+    (width, height), (left, top) = layout.panel, layout.corner(number)
+    points = layout.unit * 72 / _DPI
+    axes = _axes(figure, left, top, width, height)
+    axes.imshow(
+        np.rint(255 * panel.colours).astype(np.uint8),
+        extent=(0, width, height, 0),
+        interpolation="nearest",
+        aspect="auto",
+    )
+    axes.set(xlim=(0, width), ylim=(height, 0), xticks=[], yticks=[])
+    for spine in axes.spines.values():
+        spine.set(color="#d5d8dc", linewidth=1.2 * points)
+    axes.set_title(panel.caption, size=19 * points, color=INK, pad=9 * points)
+    _outlines(axes, panel.outlines, points)
+    _sides(axes, panel.camera, points)
+    _scale_bar(axes, panel.camera, points)
+    if panel.bar is not None:
+        _colour_bar(figure, layout, (left, top + height), panel.bar)
+
+
+def _sides(axes: Axes, camera: Camera, points: float) -> None:
+    """Letters of the patient's sides at the rims, left and right in a ring of their own colour.
+
+    Where the view is along the line from left to right, a ring in the corner says which side of
+    the patient one sees.
+    """
+    width, height = camera.size
+    step = 24 * points * _DPI / 72
+    right, left, above, below = camera.letters()
+    places = (
+        (right, width - step, height / 2),
+        (left, step, height / 2),
+        (above, width / 2, step),
+        (below, width / 2, height - step),
+    )
+    for letters, x, y in places:
+        _mark(axes, letters, x, y, points)
+    facing = camera.facing()
+    if not set("LR") & set(right + left):
+        side = {"L": "left", "R": "right"}.get(facing[0], facing)
+        _mark(axes, facing[0], step, step, points)
+        axes.text(
+            2 * step,
+            step,
+            f"the patient's {side} side",
+            size=14 * points,
+            color=INK,
+            va="center_baseline",
+        )
+
+
+def _mark(axes: Axes, letters: str, x: float, y: float, points: float) -> None:
+    """Letters at a pixel; those of left and right stand white in a filled ring."""
+    strong = bool(set("LR") & set(letters))
+    radius = 15 * points * _DPI / 72
+    if strong:
+        axes.add_patch(Circle((x, y), radius, facecolor=INK, edgecolor="white", zorder=6))
+    axes.text(
+        x,
+        y,
+        letters,
+        size=(16 if len(letters) == 1 else 13) * points,
+        color="white" if strong else PALE,
+        weight="bold" if strong else "normal",
+        ha="center",
+        va="center",
+        family="DejaVu Sans Mono",  # whose I is no bar
+        zorder=7,
+    )
+
+
+def _scale_bar(axes: Axes, camera: Camera, points: float) -> None:
+    """A bar of a round number of mm in the lower left."""
+    width, height = camera.size
+    length = scale_length(0.22 * width / camera.scale)
+    pixel = points * _DPI / 72
+    left, bottom = 22 * pixel, height - 22 * pixel
+    bar = Rectangle(
+        (left, bottom - 5 * pixel),
+        length * camera.scale,
+        5 * pixel,
+        facecolor=INK,
+        edgecolor="none",
+        zorder=6,
+        gid="scale bar",
+    )
+    axes.add_patch(bar)
+    axes.text(
+        left + length * camera.scale / 2,
+        bottom - 10 * pixel,
+        f"{length:g} mm",
+        size=14 * points,
+        color=INK,
+        ha="center",
+        va="bottom",
+        zorder=6,
+    )
+
+
+def _outlines(axes: Axes, outlines: Sequence[Outline], points: float) -> None:
+    """Silhouettes as lines through half covered pixels, with a legend."""
+    handles = []
+    for outline in outlines:
+        rows, columns = outline.coverage.shape
+        x, y = np.arange(columns) + 0.5, np.arange(rows) + 0.5
+        style: Any = (0, (4.0, 2.2)) if outline.dashed else "solid"
+        wide = (1.9 if outline.dashed else 2.2) * points
+        axes.contour(
+            x,
+            y,
+            outline.coverage,
+            levels=[0.5],
+            colors=[outline.colour],
+            linestyles=[style],
+            linewidths=wide,
+            zorder=4 + outline.dashed,
+        )
+        handles.append(Line2D([], [], color=outline.colour, ls=style, lw=wide, label=outline.label))
+    if handles:
+        axes.legend(
+            handles=handles,
+            loc="lower right",
+            fontsize=14 * points,
+            frameon=False,
+            labelcolor=INK,
+            borderaxespad=1.2,
+        )
+
+
+def _colour_bar(figure: Figure, layout: Layout, corner: tuple[int, int], bar: Bar) -> None:
+    """A bar below the panel whose ends are the limits, with ticks where the picture has lines."""
+    left, top = corner
+    width, unit = layout.panel[0], layout.unit
+    points = unit * 72 / _DPI
+    low, high = bar.limits
+    axes = _axes(figure, left + 0.18 * width, top + 12 * unit, 0.64 * width, 15 * unit)
+    span = (low, high) if high > low else (low, low + 1.0)
+    axes.imshow(
+        np.linspace(0, 1, 256)[None],
+        extent=(*span, 0, 1),
+        cmap=ListedColormap(list(map(tuple, bar.table))),
+        norm=Normalize(0, 1),
+        aspect="auto",
+    )
+    ends = [value for value in span if _far(value, bar.levels, span)] if high > low else [low]
+    axes.set(xlim=span, yticks=[], label="colour bar")
+    axes.set_xticks(
+        sorted([*bar.levels.tolist(), *ends]),
+        [f"{tick:.3g}" for tick in sorted([*bar.levels.tolist(), *ends])],
+    )
+    axes.vlines(bar.levels, 0, 1, color="black", alpha=0.55, lw=0.9 * points)
+    axes.tick_params(labelsize=14 * points, color=INK, labelcolor=INK, length=4 * points)
+    axes.set_xlabel(bar.label, size=15 * points, color=INK, labelpad=3.5 * points)
+    for spine in axes.spines.values():
+        spine.set(color=INK, linewidth=0.8 * points)
+
+
+def _far(value: float, levels: Floats, span: tuple[float, float]) -> bool:
+    """Whether a number beside the bar's end does not run into the next one."""
+    return bool((np.abs(levels - value) > 0.07 * (span[1] - span[0])).all())

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a picture shows: a surface, what stands beside it, and how both were moved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil, sqrt
+
+import numpy as np
+
+from bezsoma.arrays import Floats, Ints
+from bezsoma.bernstein import domain_points
+from bezsoma.errors import InputError
+from bezsoma.mesh import Field, TetMesh
+from bezsoma.view.restriction import controls_on, degree_of, facets_named, on_same_mesh
+from bezsoma.view.surfaces import MOST_PARTS, Surface, displaced, parts_for
+
+Named = str | tuple[str, ...] | None
+_TRIANGLES = 60_000
+"""So many are cut at least, for the shade to be smooth."""
+_MOST_TRIANGLES = 1_500_000
+"""More do not show at any size of picture that is allowed, and cost memory."""
+_QUARTER = 0.25
+"""By how much of a pixel the triangles may stray from the polynomial."""
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What is to be seen: the surface that matters, and the rest of the boundary in grey."""
+
+    mesh: TetMesh
+    facets: Ints
+    rest: Ints
+    displacement: Field | None
+    """In mm."""
+    magnified: float
+
+    @classmethod
+    def of(
+        cls, mesh: TetMesh, surface: Named, rest: bool, displacement: Field | None, magnified: float
+    ) -> Subject:
+        """The subject of these facets, once all of it is checked."""
+        if displacement is not None:
+            _check_displacement(mesh, displacement)
+        if not np.isfinite(magnified):
+            raise InputError(f"a displacement cannot be drawn {magnified} times; give a number")
+        facets = facets_named(mesh, surface)
+        others = _without(mesh.boundary, facets) if rest else facets[:0]
+        return cls(mesh, facets, others, displacement, magnified)
+
+    def points(self) -> Floats:
+        """Points (p, 3) mm that a camera must show: corners and controls, before and after.
+
+        A displaced patch lies in the convex hull of its controls, so nothing sticks out.
+        """
+        every = np.concatenate([self.facets, self.rest])
+        corners = self.mesh.points[every]
+        if self.displacement is None:
+            return np.asarray(corners.reshape(-1, 3))
+        degree = degree_of(self.displacement)
+        controls = self.magnified * controls_on(self.mesh, self.displacement, every)
+        after = domain_points(degree, 2) @ corners + controls
+        return np.concatenate([corners.reshape(-1, 3), after.reshape(-1, 3)])
+
+    def parts(self, scale: float) -> int:
+        """Into how many parts to cut the edges of facets at `scale` pixels per mm."""
+        number = len(self.facets) + len(self.rest)
+        wanted = ceil(sqrt(_TRIANGLES / number))
+        most = min(MOST_PARTS, int(sqrt(_MOST_TRIANGLES / number)))
+        if self.displacement is not None:
+            degree = degree_of(self.displacement)
+            controls = controls_on(self.mesh, self.displacement, self.facets)
+            wanted = max(
+                wanted, parts_for(self.magnified * controls, degree, _QUARTER / scale), degree
+            )
+        return max(1, min(most, wanted))
+
+    def surfaces(self, scale: float, moved: bool) -> tuple[Surface, Surface | None]:
+        """The surface that matters and the rest, before or after the displacement."""
+        parts = self.parts(scale)
+        field = self.displacement if moved else None
+        first, second = (
+            displaced(self.mesh, facets, field, parts, magnified=self.magnified)
+            if len(facets)
+            else None
+            for facets in (self.facets, self.rest)
+        )
+        assert first is not None  # a named surface of a mesh is never empty
+        return first, second
+
+
+def _check_displacement(mesh: TetMesh, displacement: Field) -> None:
+    """Refuses what does not move points of this mesh in space."""
+    if not isinstance(displacement, Field):
+        raise InputError(
+            "a displacement that jumps between tets cannot be drawn; give a Field, such as"
+            " averaged() of a broken one"
+        )
+    on_same_mesh(mesh, displacement, "displacement")
+    shape = np.asarray(displacement.controls).shape
+    if shape[1:] != (3,):
+        raise InputError(
+            f"a displacement has three components in mm, but these controls have shape {shape}"
+        )
+    if not np.isfinite(displacement.controls).all():
+        raise InputError("the displacement holds NaN or infinite controls; it cannot be drawn")
+
+
+def _without(facets: Ints, taken: Ints) -> Ints:
+    """Those of the facets (f, 3) that are not among `taken`."""
+    rows, number = np.unique(np.concatenate([facets, taken]), axis=0, return_inverse=True)
+    keep = np.ones(len(rows), np.bool_)
+    keep[number.ravel()[len(facets) :]] = False
+    return facets[keep[number.ravel()[: len(facets)]]]

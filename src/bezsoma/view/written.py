@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files that appear whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from pathlib import Path
+
+from bezsoma.errors import InputError
+
+
+def written(path: str | Path, content: bytes, overwrite: bool = False) -> Path:
+    """The path, once `content` stands there; refuses to replace a file unless `overwrite`.
+
+    The bytes go to a neighbour of the file first and are then moved in one step, so that an
+    interrupted run or a full disk leaves either the old file or none, never half of one.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     target = written(Path(folder) / "a.bin", b"abc")
+    ...     target.read_bytes(), [entry.name for entry in Path(folder).iterdir()]
+    (b'abc', ['a.bin'])
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise InputError(f"{str(target)!r} is a folder; give the name of a file in it")
+    if target.exists() and not overwrite:
+        raise InputError(f"{str(target)!r} exists; say overwrite=True to replace it")
+    if not target.parent.is_dir():
+        raise InputError(f"there is no folder {str(target.parent)!r}; make it first")
+    beside = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
+    try:
+        with beside.open("xb") as stream:
+            stream.write(content)
+        os.replace(beside, target)
+    except OSError as error:
+        raise InputError(
+            f"cannot write {str(target)!r} ({error.strerror}); make room or choose another folder"
+        ) from error
+    finally:
+        beside.unlink(missing_ok=True)
+    return target
