@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The README.txt of a results folder: what was done, what came out, what each file is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+MEANINGS = {
+    "README.txt": "this text",
+    "case.toml": "the case, as it ran; `bezsoma run` on its original repeats this",
+    "summary.json": "sizes, method, energy, reactions, probes, versions, for programs to read",
+    "mesh.npz": "the mesh with its named regions and surfaces",
+    "displacement.npz": "the displacement as Bernstein controls, bit for bit",
+    "displacement.vtu": "the displacement for ParaView or 3D Slicer (curved cells, full degree)",
+}
+DIRECTIONS = "x to the patient's left, y to the back, z up"
+
+
+def readme(summary: Mapping[str, Any]) -> str:
+    """The text, for a reader who has never seen such a folder."""
+    parts = [
+        f"{summary['title']}\n{'=' * len(summary['title'])}",
+        f"{summary['notice']} Do not base treatment on it.",
+        _what(summary),
+        motion_table(summary["probes"]),
+        _expectations(summary["expectations"]),
+        "\n".join(f"Beware: {warning}." for warning in summary["warnings"]),
+        _files(summary["files"]),
+        "Read it again in Python:\n\n    import bezsoma as bz\n"
+        '    results = bz.read_results("this folder")\n'
+        "    results.displacement.at(points)   # mm, at any points (p, 3) of the mesh",
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def motion_table(probes: Mapping[str, Mapping[str, Any]]) -> str:
+    """How far each probe moved, mm; empty without probes.
+
+    >>> print(motion_table({"chin": {"displacement": [0.0, -4.25, 0.5], "size": 4.279}}))
+    motion, mm          x       y       z    size
+    chin             0.00   -4.25    0.50    4.28
+    (x to the patient's left, y to the back, z up)
+    """
+    if not probes:
+        return ""
+    wide = max(12, *(len(name) for name in probes))
+    lines = [f"{'motion, mm':<{wide}}" + "".join(f"{axis:>8}" for axis in "xyz") + f"{'size':>8}"]
+    for name, probe in probes.items():
+        numbers = [*probe["displacement"], probe["size"]]
+        lines.append(f"{name:<{wide}}" + "".join(f"{number + 0.0:8.2f}" for number in numbers))
+    return "\n".join([*lines, f"({DIRECTIONS})"])
+
+
+def _what(summary: Mapping[str, Any]) -> str:
+    """Size, method and energy in two lines."""
+    sizes = summary["sizes"]
+    return (
+        f"{sizes['tets']} tets of degree {summary['degree']}, {sizes['controls']} controls; "
+        f"method {summary['method']}, {summary['iterations']} iterations, residual "
+        f"{summary['residual']:.1e}.\n"
+        f"Stored energy {summary['energy']:.6g} N mm; largest displacement "
+        f"{summary['largest_displacement']:.3f} mm."
+    )
+
+
+def _expectations(checks: list[Mapping[str, Any]]) -> str:
+    """The numbers expected of the case and whether they were met."""
+    lines = [
+        f"{'met    ' if each['met'] else 'NOT MET'}  {each['of']} = {each['found']:.6g}, expected "
+        f"{each['between'][0]:g} to {each['between'][1]:g} ({each['source']})"
+        for each in checks
+    ]
+    return "\n".join(["Expected of this case:", *lines]) if lines else ""
+
+
+def _files(files: list[str]) -> str:
+    """What each file of the folder is."""
+    wide = max(map(len, files))
+    return "\n".join(
+        ["Files:", *(f"  {name:<{wide}}  {MEANINGS.get(name, _picture(name))}" for name in files)]
+    )
+
+
+def _picture(name: str) -> str:
+    """What a file is that has no entry of its own."""
+    if name.startswith("before-after"):
+        return "before, after, how far each point moved (mm), and both outlines"
+    return "see the documentation"

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A case from its tables to its results folder, everything that can be checked first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from bezsoma.arrays import Floats
+from bezsoma.case.build import body_of
+from bezsoma.case.expectations import checked, motions, probe_points
+from bezsoma.case.quantities import Measured
+from bezsoma.case.reading import Case
+from bezsoma.case.sources import mesh_of
+from bezsoma.case.writing import write_results
+from bezsoma.mechanics.body import Body
+from bezsoma.mesh.tets import TetMesh
+from bezsoma.results import Results, destination
+from bezsoma.solvers.solution import Solution
+from bezsoma.solvers.solve import solve
+
+Progress = Callable[[str, float | None, str], None]
+"""Called with a stage, how much of it is done (0 to 1, None where unknown) and a note."""
+
+NOTICE = "BezSoma is research software and not a medical device."
+FAR = 0.05
+"""A probe is far from its surface beyond this part of the size of the mesh."""
+BYTES_OF_CONTROL = 400
+"""A generous guess of what all files together take for one control (with the mesh and VTU)."""
+BYTES_OF_PICTURES = 4_000_000
+
+
+def silent(stage: str, fraction: float | None, note: str) -> None:
+    """The progress of those who do not watch."""
+
+
+def run_case(
+    case: Case,
+    folder: Path | str,
+    *,
+    overwrite: bool = False,
+    degree: int | None = None,
+    progress: Progress = silent,
+) -> Results:
+    """Solve a case and leave its results folder, whole or not at all; gives what it holds.
+
+    `degree` takes the place of the one in the file. The folder is looked at first, then the mesh,
+    names, probes and expectations; only then is anything solved. Whether the expectations were
+    met stands in `summary["expectations"]`.
+    """
+    place = destination(folder, overwrite=overwrite)
+    start = perf_counter()
+    progress("mesh", None, "reading the mesh and checking the case")
+    mesh = mesh_of(case)
+    probes = probe_points(case, mesh)
+    body = body_of(case, mesh, case.file.degree if degree is None else degree)
+    place.check_room(_size(body))
+    table = case.file.solver
+    solution = solve(body, solver=table.method, rtol=table.rtol, progress=progress)
+    summary = summary_of(case, solution, probes)
+    summary["seconds"] = perf_counter() - start
+    with place.filling() as partial:
+        write_results(partial, case, solution, summary, progress)
+    return Results(place.folder, mesh, solution.displacement, summary, case.text)
+
+
+def summary_of(case: Case, solution: Solution, probes: dict[str, Floats]) -> dict[str, Any]:
+    """What summary.json says of a solution; lengths mm, forces N, moments and energy N mm."""
+    measured = Measured(solution, probes)
+    mesh, degree = solution.body.mesh, solution.body.degree
+    probed = motions(case, measured)
+    return {
+        "title": case.title,
+        "case": case.path.name,
+        "notice": NOTICE,
+        "units": {"length": "mm", "force": "N", "stress": "MPa", "energy": "N mm"},
+        "degree_in_case": case.file.degree,
+        **solution.summary(),
+        "regions": list(mesh.regions),
+        "surfaces": {name: len(facets) for name, facets in mesh.surfaces.items()},
+        "probes": probed,
+        "warnings": [*warnings(mesh, probed)],
+        "expectations": checked(case, degree, measured),
+    }
+
+
+def warnings(mesh: TetMesh, probed: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+    """What is no fault but may not be what was meant."""
+    if mesh.dropped:
+        yield f"{mesh.dropped} points of the mesh belong to no tet and were dropped"
+    size = float(np.linalg.norm(np.ptp(mesh.points, axis=0)))
+    for name, probe in probed.items():
+        if probe["off_by"] > FAR * size:
+            yield f"the probe {name!r} was taken to its surface over {probe['off_by']:.3g} mm"
+
+
+def _size(body: Body) -> int:
+    """About how many bytes the results will take."""
+    cells = len(body.mesh.tets) * body.degree**3 / 6 + len(body.mesh.points)
+    return int(cells) * BYTES_OF_CONTROL + BYTES_OF_PICTURES
