@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a solve gives: the displacement, and all that follows from it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+import scipy
+
+from bezsoma import bernstein
+from bezsoma.arrays import Floats
+from bezsoma.equations import stress as stresses
+from bezsoma.equations.displacement import Equations
+from bezsoma.mechanics.body import Body
+from bezsoma.mesh.broken_field import BrokenField
+from bezsoma.mesh.control_net import ControlNet
+from bezsoma.mesh.evaluation import tet_portions
+from bezsoma.mesh.field import Field
+
+
+@dataclass(frozen=True, eq=False)
+class Reaction:
+    """What a support does to the body: force (3,) N, moment (3,) N mm about the origin."""
+
+    force: Floats
+    moment: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The answer to a body at rest: mm, N, MPa, N mm.
+
+    `reactions` has a Reaction for each supported place; a control on the line between two places
+    counts for one of them, so that they add up to the whole. `history` holds the residual of each
+    iteration, the Euclidean norm over the free components relative to that at zero free
+    displacement; `residual` is the one attained, taken anew from the equations. `energy` is the
+    stored energy, `volume_change` is int div u in mm3. `timings` has seconds by stage.
+    """
+
+    body: Body
+    displacement: Field
+    reactions: Mapping[str, Reaction]
+    energy: float
+    volume_change: float
+    method: str
+    history: tuple[float, ...]
+    iterations: int
+    residual: float
+    free: int
+    timings: Mapping[str, float]
+
+    @property
+    def net(self) -> ControlNet:
+        """The control net."""
+        return self.displacement.net
+
+    @cached_property
+    def strain(self) -> BrokenField:
+        """The small strain, (3, 3) at a point: (H + H^T)/2 with H = grad u. Jumps between tets."""
+        return stresses.strain(self.displacement)
+
+    @cached_property
+    def stress(self) -> BrokenField:
+        """The Cauchy stress, (3, 3) at a point, MPa; of degree n - 1, jumps between tets.
+
+        `stress.averaged()` is the continuous field for pictures and probes.
+        """
+        return stresses.stress(self.body, self.displacement)
+
+    @cached_property
+    def von_mises(self) -> BrokenField:
+        """The von Mises stress, MPa, *interpolated* in the domain points of degree n - 1.
+
+        A root is no polynomial: exact in those points only. See `von_mises_at`.
+        """
+        return stresses.interpolated(self.stress, stresses.von_mises)
+
+    @cached_property
+    def principal_stresses(self) -> BrokenField:
+        """The principal stresses (3,), MPa, largest first, *interpolated* as `von_mises` is."""
+        return stresses.interpolated(self.stress, stresses.principal)
+
+    def von_mises_at(self, points: Floats) -> Floats:
+        """The von Mises stress (p,), MPa, of the stress at points (p, 3); no interpolation."""
+        return stresses.von_mises(self.stress.at(points))
+
+    def principal_stresses_at(self, points: Floats) -> Floats:
+        """The principal stresses (p, 3), MPa, largest first, of the stress at points (p, 3)."""
+        return stresses.principal(self.stress.at(points))
+
+    @cached_property
+    def largest_displacement(self) -> float:
+        """The largest length of the displacement, mm, over the domain points of every tet.
+
+        It is attained; the true maximum may lie a little above, and at most at
+        `largest_displacement_bound`. For degree 1 all three are one number.
+        """
+        field = self.displacement
+        bary = bernstein.domain_points(field.degree, 3)
+        parts = tet_portions(field, len(bary))
+        return max(
+            float(np.sqrt((field.tabulated(bary, part) ** 2).sum(axis=-1)).max()) for part in parts
+        )
+
+    @property
+    def largest_displacement_bound(self) -> float:
+        """The largest length of a control, mm: no point moves further (convex hull)."""
+        return float(np.linalg.norm(self.displacement.controls, axis=1).max())
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers of this solution for a JSON file; mm, N, N mm, s."""
+        mesh, net = self.body.mesh, self.net
+        sizes = {"tets": len(mesh.tets), "vertices": len(mesh.points), "controls": net.count}
+        return {
+            "sizes": {**sizes, "unknowns": 3 * net.count, "free_unknowns": self.free},
+            "degree": net.degree,
+            "method": self.method,
+            "iterations": self.iterations,
+            "residual": self.residual,
+            "history": list(self.history),
+            "energy": self.energy,
+            "volume_change": self.volume_change,
+            "reactions": {
+                place: {"force": reaction.force.tolist(), "moment": reaction.moment.tolist()}
+                for place, reaction in self.reactions.items()
+            },
+            "largest_displacement": self.largest_displacement,
+            "largest_displacement_bound": self.largest_displacement_bound,
+            "timings": dict(self.timings),
+            "versions": {
+                "bezsoma": version("bezsoma"),
+                "python": sys.version.split()[0],
+                "numpy": np.__version__,
+                "scipy": scipy.__version__,
+            },
+        }
+
+
+def reactions(equations: Equations, u: Floats) -> dict[str, Reaction]:
+    """The reaction of each supported place: force, and moment about the origin.
+
+        force = sum_c f_c,  moment = sum_c x_c x f_c,  f = K u - loads where held
+
+    Exact for any degree, although a control is no point of the body: the controls of a rigid
+    motion are its values at the domain points x_c (linear precision), so that x_c x f_c summed is
+    the work of the forces on a turn. Positions are those before the deformation.
+    """
+    points, out = equations.net.points, {}
+    pull = -equations.residual(u)
+    for place, (controls, components) in equations.of_support.items():
+        f = np.where(components, pull[controls], 0.0)
+        out[place] = Reaction(f.sum(axis=0), np.cross(points[controls], f).sum(axis=0))
+    return out

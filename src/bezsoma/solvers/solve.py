@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The one way to solve a body."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+
+import numpy as np
+
+from bezsoma.arrays import Floats, frozen
+from bezsoma.equations.assembled import assembled
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.displacement import Equations
+from bezsoma.equations.element import moduli
+from bezsoma.equations.forces import forces
+from bezsoma.equations.rigid import refuse_rigid_motions
+from bezsoma.equations.stress import energy_and_volume_change
+from bezsoma.errors import InputError, NotConverged, unknown
+from bezsoma.mechanics.body import Body
+from bezsoma.mesh.control_net import ControlNet
+from bezsoma.mesh.field import Field
+from bezsoma.solvers.direct import direct
+from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_cholesky
+from bezsoma.solvers.solution import Solution, reactions
+
+Progress = Callable[[str, float | None, str], None]
+"""Called with a stage, how much of it is done (0 to 1, None where unknown) and a note."""
+
+SOLVERS = ("auto", "direct", "cg")
+DIRECT_UP_TO = 5000
+"""Unknowns up to which the direct solver is chosen: there it takes a third of a second at most."""
+
+
+def solve(
+    body: Body, *, solver: str = "auto", rtol: float = 1e-8, progress: Progress | None = None
+) -> Solution:
+    """The displacement of a body at rest [mm], and what follows from it: see `Solution`.
+
+    Solves the displacement form, int tau(u) : eps(v) = loads on v for all v that are zero where
+    something is prescribed (paper, eq. 7 and 33). Beware of nu close to 1/2, where this form
+    stiffens; degrees of 3 and more suffer least.
+
+    A bar that is drawn out to twice a strain of 1 % carries E times that, whatever its degree:
+
+    >>> from bezsoma.mechanics import Fixed, LinearElastic, Moved
+    >>> from bezsoma.mesh.solids import block
+    >>> planes = {"left": "x", "front": "y", "bottom": "z"}
+    >>> held = [Fixed(place, components=axis) for place, axis in planes.items()]
+    >>> drawn = Moved("top", translation=(0, 0, 0.02), components="z")
+    >>> bar = Body(block(), 2, LinearElastic(E=5.0, nu=0.3), [*held, drawn])
+    >>> solution = solve(bar)
+    >>> solution.reactions["top"].force.round(12).tolist()
+    [0.0, 0.0, 0.1]
+    >>> bool(abs(solution.energy - 0.1 * 0.02 / 2) < 1e-15)
+    True
+
+    Args:
+        body: what is to be solved.
+        solver: "direct" (a sparse factorisation, to rounding), "cg" (conjugate gradients with an
+            incomplete Cholesky factorisation), or "auto": direct up to `DIRECT_UP_TO` unknowns.
+        rtol: what the Euclidean norm of the residual over the free components has to come down
+            to, relative to that at zero free displacement.
+        progress: called with a stage, how much of it is done, and a note.
+
+    Raises:
+        InputError: supports that disagree, or leave rigid motions (named), and the like.
+        NotConverged: with the history of the residual, and what to try.
+    """
+    _check(body, solver, rtol)
+    watch = _Watch(progress)
+    equations = _equations(body, watch)
+    unbalanced = equations.residual(equations.given)
+    _check_range(unbalanced, "the forces at zero free displacement")
+    b = np.where(equations.held, 0.0, unbalanced)
+    found = _solved(equations, b, solver, rtol, watch)
+    return _solution(body, equations, found, watch)
+
+
+@dataclass
+class _Watch:
+    """Seconds by stage, and whom to tell."""
+
+    progress: Progress | None
+    timings: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str, note: str) -> Iterator[None]:
+        start = perf_counter()
+        self.tell(name, None, note)
+        yield
+        self.timings[name] = perf_counter() - start
+
+    def tell(self, name: str, fraction: float | None, note: str) -> None:
+        if self.progress:
+            self.progress(name, fraction, note)
+
+    def iterations(self, rtol: float) -> Report:
+        """What tells of iterations: how far the residual has come, on a scale of its logarithm."""
+
+        def report(iteration: int, residual: float) -> None:
+            far = 1.0 if residual == 0 else math.log(residual) / math.log(rtol)
+            note = f"iteration {iteration}, residual {residual:.1e}"
+            self.tell("solving", min(max(far, 0.0), 1.0), note)
+
+        return report
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    x: Floats
+    method: str
+    history: list[float] = field(default_factory=list)
+
+
+def _check(body: Body, solver: str, rtol: float) -> None:
+    if not isinstance(body, Body):
+        raise InputError(f"solve() was given {body!r}; it solves a Body")
+    if solver not in SOLVERS:
+        raise InputError(unknown("solver", solver, SOLVERS, "solve()"))
+    if not (isinstance(rtol, int | float) and 0 < rtol < 1):
+        raise InputError(f"rtol = {rtol!r} has to lie between 0 and 1; 1e-8 serves most")
+
+
+def _check_range(numbers: Floats, what: str) -> None:
+    if not np.isfinite(numbers).all():
+        raise InputError(
+            f"{what} leave the range of floating-point numbers; check the units of E (MPa), of the "
+            "loads (N) and of the mesh (mm)"
+        )
+
+
+def _equations(body: Body, watch: _Watch) -> Equations:
+    with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
+        lam, mu = moduli(body)
+        net = ControlNet(body.mesh, body.degree)
+    with watch.stage("supports", f"{3 * net.count} unknowns"):
+        known = prescribed(body, net)
+        refuse_rigid_motions(net, known.mask)
+    with watch.stage("loads", f"{len(body.loads)} given"):
+        loads = forces(body, net)
+    with watch.stage("matrix", f"{3 * net.count} unknowns"):
+        matrix = assembled(net, lam, mu)
+    return Equations(net, matrix, loads, known.mask, known.values, known.of_support)
+
+
+def _solved(equations: Equations, b: Floats, solver: str, rtol: float, watch: _Watch) -> _Found:
+    chosen, why = _choice(equations, b, solver)
+    with watch.stage("solving", f"{chosen}: {why}"):
+        if chosen == "nothing":
+            return _Found(np.zeros_like(b), f"nothing to solve: {why}")
+        size = float(np.abs(b).max())  # so that squares of tiny or huge forces stay in range
+        method = _directly if chosen == "direct" else _iteratively
+        found = method(equations, b / size, rtol, watch.iterations(rtol))
+        return replace(found, x=found.x * size, method=f"{found.method}, {why}")
+
+
+def _choice(equations: Equations, b: Floats, solver: str) -> tuple[str, str]:
+    if not b.any():
+        return "nothing", "no free component is out of balance"
+    if solver != "auto":
+        return solver, "as asked for"
+    if equations.free <= DIRECT_UP_TO:
+        return "direct", f"since {equations.free} unknowns are not more than {DIRECT_UP_TO}"
+    return "cg", f"since {equations.free} unknowns are more than {DIRECT_UP_TO}"
+
+
+def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
+    x, history = direct(equations, b, report)
+    if not history[-1] <= rtol:
+        raise NotConverged(
+            f"the direct solver is left with {history[-1]:.3g} of the residual at zero free "
+            f"displacement, and rtol = {rtol:g} was asked for: rounding stops it there. Take a "
+            "larger rtol, or look for tets that are almost flat and nu very close to 1/2",
+            history,
+        )
+    return _Found(x, "direct (SuperLU, scaled and refined)", history)
+
+
+def _iteratively(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
+    factor = incomplete_cholesky(equations.matrix, equations.held)
+    x, history = conjugate_gradients(equations.free_product, factor, b, rtol, report=report)
+    raised = f" of the diagonal raised by {factor.shift:g} of itself" if factor.shift else ""
+    return _Found(x, f"conjugate gradients with incomplete Cholesky{raised}", history)
+
+
+def _solution(body: Body, equations: Equations, found: _Found, watch: _Watch) -> Solution:
+    with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
+        displacement = Field(equations.net, frozen(equations.given + found.x))
+        energy, volume_change = energy_and_volume_change(body, displacement)
+        supports = reactions(equations, displacement.controls)
+    _check_range(np.array([energy, volume_change]), "the energy and the change of volume")
+    return Solution(
+        body,
+        displacement,
+        supports,
+        energy,
+        volume_change,
+        found.method,
+        tuple(found.history),
+        max(len(found.history) - 1, 0),
+        found.history[-1] if found.history else 0.0,
+        equations.free,
+        watch.timings,
+    )
