@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The C++ kernels: flat arrays in C order; 0 threads means all cores."""
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 
 from .arrays import Bools, Floats, Ints
+
+Int32s = npt.NDArray[np.int32]
+Singles = npt.NDArray[np.float32]
 
 def element_matrices(
     degree: int, gradients: Floats, volumes: Floats, lam: Floats, mu: Floats
@@ -45,3 +50,44 @@ def solve_cholesky(
     r: Floats,
     z: Floats,
 ) -> None: ...
+
+class MatrixFree:
+    def __init__(
+        self,
+        degree: int,
+        first: Int32s,
+        gradients: Floats,
+        volumes: Floats,
+        region: Int32s,
+        lame: Floats,
+        threads: int = 0,
+        instructions: str = "",
+    ) -> None: ...
+    def apply(self, x: Floats, y: Floats) -> None: ...
+    def apply_single(self, x: Singles, y: Singles) -> None: ...
+    def work(self, x: Floats) -> float: ...
+    @property
+    def instructions(self) -> str: ...
+    @property
+    def threads(self) -> int: ...
+
+class Multigrid:
+    def __init__(
+        self, k: MatrixFree, corners: Int32s, points: Floats, held: Bools, held_vertices: Bools
+    ) -> None: ...
+    def solve(
+        self,
+        f: Floats,
+        x: Floats,
+        reference: float,
+        rtol: float,
+        most: int,
+        report: Callable[[int, float], None],
+    ) -> tuple[list[float], float, bool, bool]: ...
+    def apply(self, r: Floats, z: Floats) -> None: ...
+    @property
+    def levels(self) -> list[int]: ...
+    @property
+    def bytes(self) -> int: ...
+
+def instruction_sets() -> list[str]: ...

@@ -2,16 +2,24 @@
 // The one file that knows Python. It checks shapes, releases the interpreter and calls the kernels.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/function.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "aggregation.hpp"
 #include "block_csr.hpp"
 #include "cholesky.hpp"
+#include "conjugate_gradients.hpp"
+#include "elastic_operator.hpp"
 #include "elasticity.hpp"
+#include "preconditioner.hpp"
 #include "simplex.hpp"
+#include "vertex_matrix.hpp"
 
 namespace nb = nanobind;
 
@@ -135,6 +143,164 @@ void solve_cholesky(In<std::int64_t, -1> start, In<std::int32_t, -1> column,
     bezsoma::solve_cholesky({where, below.data(), inverse.data()}, r.data(), z.data());
 }
 
+// ------------------------------------------------------------------ without a matrix
+
+/// Tets in the order of the walk that numbered their controls.
+struct Walk {
+    int degree;
+    In<std::int32_t, -1, -1> first;
+    In<double, -1, 4, 3> gradients;
+    In<double, -1> volumes;
+    In<std::int32_t, -1> region;
+    In<double, -1, 2> lame;
+
+    bezsoma::ElasticTets tets() const {
+        require(degree >= 1 && degree <= 10, "degree must be 1 to 10");
+        require(first.shape(1) == static_cast<std::size_t>(bezsoma::entities_of_tet(degree)),
+                "first must have a column for each entity that holds controls");
+        const std::size_t tets = volumes.shape(0);
+        require(tets > 0 && first.shape(0) == tets && gradients.shape(0) == tets &&
+                    region.shape(0) == tets,
+                "first, gradients, volumes and region must have one row a tet");
+        const auto regions = static_cast<std::int32_t>(lame.shape(0));
+        for (std::size_t t = 0; t < tets; ++t)
+            require(region.data()[t] >= 0 && region.data()[t] < regions,
+                    "region must number the rows of lame");
+        return {degree,         static_cast<std::int64_t>(tets),
+                first.data(),   gradients.data(),
+                volumes.data(), region.data(),
+                lame.data(),    regions};
+    }
+};
+
+/// Lets Python's signal handlers run: Ctrl-C in the middle of a computation.
+void listen_to_signals() {
+    nb::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0)
+        throw nb::python_error();
+}
+
+/// K of one body without a matrix, its threads, and the kernels of one instruction set.
+class MatrixFree {
+public:
+    MatrixFree(Walk walk, std::size_t threads, const std::string &instructions)
+        : walk_(std::move(walk)), team_(threads),
+          kernels_(instructions.empty() ? &bezsoma::best_kernels()
+                                        : bezsoma::kernels_named(instructions.c_str())) {
+        require(kernels_ != nullptr, "this processor or build lacks that instruction set");
+        const bezsoma::ElasticTets tets = walk_.tets();
+        team_.watch(listen_to_signals);
+        nb::gil_scoped_release released;
+        double_ = std::make_unique<bezsoma::ElasticOperator<double>>(tets, *kernels_, team_);
+    }
+
+    void apply(In<double, -1, 3, -1> x, nb::ndarray<double, nb::shape<-1, 3, -1>, nb::c_contig> y) {
+        apply_to(*double_, x, y);
+    }
+
+    void apply_single(In<float, -1, 3, -1> x,
+                      nb::ndarray<float, nb::shape<-1, 3, -1>, nb::c_contig> y) {
+        if (!single_)
+            single_ =
+                std::make_unique<bezsoma::ElasticOperator<float>>(walk_.tets(), *kernels_, team_);
+        apply_to(*single_, x, y);
+    }
+
+    double work(In<double, -1, 3> x) {
+        require(static_cast<std::int64_t>(x.shape(0)) == double_->controls(),
+                "x must have one row a control");
+        nb::gil_scoped_release released;
+        return double_->work(x.data());
+    }
+
+    const Walk &walk() const { return walk_; }
+    bezsoma::ElasticOperator<double> &k() { return *double_; }
+    bezsoma::Team &team() { return team_; }
+    const bezsoma::Kernels &kernels() const { return *kernels_; }
+
+private:
+    template <class Operator, class X, class Y> void apply_to(Operator &k, const X &x, const Y &y) {
+        require(static_cast<std::int64_t>(x.shape(0)) == k.controls() && y.shape(0) == x.shape(0) &&
+                    y.shape(2) == x.shape(2) && x.shape(2) > 0,
+                "x and y must have one row a control and as many sides");
+        const int sides = static_cast<int>(x.shape(2));
+        nb::gil_scoped_release released;
+        k.apply(x.data(), y.data(), sides);
+    }
+
+    Walk walk_;
+    bezsoma::Team team_;
+    const bezsoma::Kernels *kernels_;
+    std::unique_ptr<bezsoma::ElasticOperator<double>> double_;
+    std::unique_ptr<bezsoma::ElasticOperator<float>> single_;
+};
+
+/// The preconditioner of a body with its supports, and the iteration that it serves.
+class Multigrid {
+public:
+    Multigrid(MatrixFree &k, In<std::int32_t, -1, 4> corners, In<double, -1, 3> points,
+              In<bool, -1, 3> held, In<bool, -1, 3> held_vertices)
+        : k_(k) {
+        const bezsoma::ElasticTets tets = k.walk().tets();
+        const auto vertices = static_cast<std::int64_t>(points.shape(0));
+        require(corners.shape(0) == k.walk().volumes.shape(0) &&
+                    held.shape(0) == static_cast<std::size_t>(k.k().controls()) &&
+                    held_vertices.shape(0) == points.shape(0),
+                "corners, held and held_vertices must fit the tets, controls and vertices");
+        held_.assign(held.data(), held.data() + held.size());
+        const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
+                                                    held_vertices.data() + held_vertices.size());
+        nb::gil_scoped_release released;
+        blocks_ = std::make_unique<bezsoma::Preconditioner>(
+            tets, corners.data(), vertices, held_.data(), k.k().chunks(), k.kernels(), k.team());
+        aggregation_ = std::make_unique<bezsoma::Aggregation>(
+            bezsoma::vertex_matrix(tets, corners.data(), vertices, at_vertices.data(), k.team()),
+            points.data(), at_vertices.data(), k.team());
+    }
+
+    auto solve(In<double, -1, 3> f, Vectors x, double reference, double rtol, int most,
+               const std::function<void(int, double)> &report) {
+        require(f.size() == held_.size() && x.size() == held_.size(),
+                "f and x must have one row a control");
+        bezsoma::Convergence found;
+        {
+            nb::gil_scoped_release released;
+            found = bezsoma::conjugate_gradients(
+                k_.k(), *blocks_, [&](const float *r, float *z) { aggregation_->apply(r, z); },
+                held_.data(), f.data(), x.data(), reference, rtol, most, k_.team(),
+                [&](int iteration, double residual) {
+                    nb::gil_scoped_acquire held;
+                    report(iteration, residual);
+                });
+        }
+        return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite);
+    }
+
+    /// z = B r, for tests of symmetry.
+    void apply(In<double, -1, 3> r, Vectors z) {
+        require(r.size() == held_.size() && z.size() == held_.size(),
+                "r and z must have one row a control");
+        std::vector<double> from(r.data(), r.data() + r.size()), to(r.size() + 16);
+        from.resize(to.size());
+        std::vector<float> down, up;
+        blocks_->forward(from.data(), 1.0, down);
+        up.resize(down.size());
+        aggregation_->apply(down.data(), up.data());
+        blocks_->back(up, 1.0, 0.0, to.data());
+        for (std::size_t i = 0; i < held_.size(); ++i)
+            z.data()[i] = held_[i] ? 0.0 : to[i];
+    }
+
+    std::vector<std::int64_t> levels() const { return aggregation_->sizes(); }
+    std::size_t bytes() const { return blocks_->bytes() + aggregation_->bytes(); }
+
+private:
+    MatrixFree &k_;
+    std::vector<std::uint8_t> held_;
+    std::unique_ptr<bezsoma::Preconditioner> blocks_;
+    std::unique_ptr<bezsoma::Aggregation> aggregation_;
+};
+
 } // namespace
 
 NB_MODULE(_core, m) {
@@ -151,4 +317,36 @@ NB_MODULE(_core, m) {
           "held"_a, "shift"_a, "least"_a);
     m.def("solve_cholesky", &solve_cholesky, "starts"_a, "columns"_a, "below"_a, "inverse"_a, "r"_a,
           "z"_a);
+    nb::class_<MatrixFree>(m, "MatrixFree")
+        .def(
+            "__init__",
+            [](MatrixFree *self, int degree, In<std::int32_t, -1, -1> first,
+               In<double, -1, 4, 3> gradients, In<double, -1> volumes, In<std::int32_t, -1> region,
+               In<double, -1, 2> lame, std::size_t threads, const std::string &instructions) {
+                new (self) MatrixFree({degree, first, gradients, volumes, region, lame}, threads,
+                                      instructions);
+            },
+            "degree"_a, "first"_a, "gradients"_a, "volumes"_a, "region"_a, "lame"_a,
+            "threads"_a = 0, "instructions"_a = "")
+        .def("apply", &MatrixFree::apply, "x"_a, "y"_a)
+        .def("work", &MatrixFree::work, "x"_a)
+        .def("apply_single", &MatrixFree::apply_single, "x"_a, "y"_a)
+        .def_prop_ro("instructions", [](const MatrixFree &k) { return k.kernels().name; })
+        .def_prop_ro("threads", [](MatrixFree &k) { return k.team().size(); });
+    nb::class_<Multigrid>(m, "Multigrid")
+        .def(nb::init<MatrixFree &, In<std::int32_t, -1, 4>, In<double, -1, 3>, In<bool, -1, 3>,
+                      In<bool, -1, 3>>(),
+             "k"_a, "corners"_a, "points"_a, "held"_a, "held_vertices"_a, nb::keep_alive<1, 2>())
+        .def("solve", &Multigrid::solve, "f"_a, "x"_a, "reference"_a, "rtol"_a, "most"_a,
+             "report"_a)
+        .def("apply", &Multigrid::apply, "r"_a, "z"_a)
+        .def_prop_ro("levels", &Multigrid::levels)
+        .def_prop_ro("bytes", &Multigrid::bytes);
+    m.def("instruction_sets", [] {
+        std::vector<std::string> found;
+        for (const char *name : {"avx512", "avx2", "baseline"})
+            if (bezsoma::kernels_named(name))
+                found.emplace_back(name);
+        return found;
+    });
 }

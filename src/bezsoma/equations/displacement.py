@@ -10,6 +10,7 @@ import numpy as np
 
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.equations.assembled import BlockMatrix
+from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.mesh.control_net import ControlNet
 
 
@@ -17,13 +18,14 @@ from bezsoma.mesh.control_net import ControlNet
 class Equations:
     """K u = f on the free components of the controls, u = given on the others (paper, eq. 33).
 
-    matrix K [N/mm]; forces f (c, 3) of the loads [N]; held (c, 3) says which components are
-    prescribed; given (c, 3) their values [mm], zero elsewhere; of_support has for each supported
-    place its controls (k,) and which of their components (k, 3) it holds.
+    stiffness K [N/mm], a matrix or what it does; forces f (c, 3) of the loads [N]; held (c, 3)
+    says which components are prescribed; given (c, 3) their values [mm], zero elsewhere;
+    of_support has for each supported place its controls (k,) and which of their components (k, 3)
+    it holds.
     """
 
     net: ControlNet
-    matrix: BlockMatrix
+    stiffness: BlockMatrix | MatrixFree
     forces: Floats
     held: Bools
     given: Floats
@@ -40,10 +42,10 @@ class Equations:
         K u are the internal forces, int B^T tau (paper, eqs. 8 and 45): for a linear law, and for
         no other, they are the stiffness matrix times the controls.
         """
-        return np.asarray(self.forces - self.matrix @ u)
+        return np.asarray(self.forces - self.stiffness @ u)
 
     def free_product(self, u: Floats) -> Floats:
         """K u (c, 3) N with zeros where the displacement is prescribed."""
-        product = self.matrix @ u
+        product = self.stiffness @ u
         np.copyto(product, 0.0, where=self.held)
         return product

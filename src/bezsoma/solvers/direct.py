@@ -10,6 +10,7 @@ from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
 from bezsoma.arrays import Floats, Ints
+from bezsoma.equations.assembled import BlockMatrix
 from bezsoma.equations.displacement import Equations
 from bezsoma.errors import InputError
 from bezsoma.solvers.krylov import Report, length
@@ -20,7 +21,7 @@ LARGEST = 2**31 - 1
 
 
 def direct(
-    equations: Equations, b: Floats, report: Report | None = None
+    equations: Equations, matrix: BlockMatrix, b: Floats, report: Report | None = None
 ) -> tuple[Floats, list[float]]:
     """The free displacement x (c, 3) with K x = b, and the relative residual of each refinement.
 
@@ -30,7 +31,7 @@ def direct(
     that halves the residual at least; the better of the last two is taken.
     """
     free = np.flatnonzero(~equations.held.ravel())
-    solve = _factored(equations, free)
+    solve = _factored(matrix, free)
     whole = length(b)
     x, r, history = np.zeros_like(b), b, [1.0]
     for step in range(1, REFINEMENTS + 1):
@@ -50,12 +51,11 @@ def direct(
     return x, history
 
 
-def _factored(equations: Equations, free: Ints) -> Callable[[Floats], Floats]:
-    matrix = equations.matrix
+def _factored(matrix: BlockMatrix, free: Ints) -> Callable[[Floats], Floats]:
     if matrix.blocks.size > LARGEST:
         raise InputError(
             f"the matrix has {matrix.blocks.size} entries, more than the direct solver can count "
-            f"({LARGEST}); use solver='cg'"
+            f"({LARGEST}); use solver='multigrid'"
         )
     scale = 1 / np.sqrt(matrix.diagonal.ravel()[free])
     part = matrix.scipy().tocsr()[free][:, free]

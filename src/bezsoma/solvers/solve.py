@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -12,31 +13,40 @@ from time import perf_counter
 import numpy as np
 
 from bezsoma.arrays import Floats, frozen
-from bezsoma.equations.assembled import assembled
+from bezsoma.equations.assembled import BlockMatrix, assembled
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.displacement import Equations
-from bezsoma.equations.element import moduli
+from bezsoma.equations.element import lame_constants, moduli
 from bezsoma.equations.forces import forces
+from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.rigid import refuse_rigid_motions
-from bezsoma.equations.stress import energy_and_volume_change
+from bezsoma.equations.stress import volume_change
 from bezsoma.errors import InputError, NotConverged, unknown
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import direct
 from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_cholesky
+from bezsoma.solvers.memory import refuse_what_does_not_fit
+from bezsoma.solvers.multigrid import multigrid
 from bezsoma.solvers.solution import Solution, reactions
 
+MOST_THREADS = 1024
 Progress = Callable[[str, float | None, str], None]
 """Called with a stage, how much of it is done (0 to 1, None where unknown) and a note."""
 
-SOLVERS = ("auto", "direct", "cg")
-DIRECT_UP_TO = 5000
-"""Unknowns up to which the direct solver is chosen: there it takes a third of a second at most."""
+SOLVERS = ("auto", "direct", "multigrid", "cg")
+DIRECT_UP_TO = 3000
+"""Unknowns up to which the direct solver is chosen: above, multigrid is ahead at every degree."""
 
 
 def solve(
-    body: Body, *, solver: str = "auto", rtol: float = 1e-8, progress: Progress | None = None
+    body: Body,
+    *,
+    solver: str = "auto",
+    rtol: float = 1e-8,
+    threads: int | None = None,
+    progress: Progress | None = None,
 ) -> Solution:
     """The displacement of a body at rest [mm], and what follows from it: see `Solution`.
 
@@ -60,10 +70,14 @@ def solve(
 
     Args:
         body: what is to be solved.
-        solver: "direct" (a sparse factorisation, to rounding), "cg" (conjugate gradients with an
-            incomplete Cholesky factorisation), or "auto": direct up to `DIRECT_UP_TO` unknowns.
+        solver: "direct" (a sparse factorisation, to rounding), "multigrid" (conjugate gradients
+            without a matrix, preconditioned by blocks of entities and multigrid), "cg" (the
+            paper's: with an incomplete Cholesky factorisation), or "auto": direct up to
+            `DIRECT_UP_TO` unknowns, multigrid above.
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to, relative to that at zero free displacement.
+        threads: how many; None takes the environment's BEZSOMA_THREADS, or all cores. The answer
+            of every solver but SuperLU's own arithmetic has the same bits for any number.
         progress: called with a stage, how much of it is done, and a note.
 
     Raises:
@@ -72,12 +86,13 @@ def solve(
     """
     _check(body, solver, rtol)
     watch = _Watch(progress)
-    equations = _equations(body, watch)
+    number = _threads(threads)
+    chosen, why, equations = _equations(body, solver, number, watch)
     unbalanced = equations.residual(equations.given)
     _check_range(unbalanced, "the forces at zero free displacement")
     b = np.where(equations.held, 0.0, unbalanced)
-    found = _solved(equations, b, solver, rtol, watch)
-    return _solution(body, equations, found, watch)
+    found = _solved(equations, b, chosen, why, rtol, watch)
+    return _solution(body, equations, found, number, watch)
 
 
 @dataclass
@@ -133,43 +148,72 @@ def _check_range(numbers: Floats, what: str) -> None:
         )
 
 
-def _equations(body: Body, watch: _Watch) -> Equations:
+def _threads(asked: int | None) -> int:
+    """How many threads: as asked for, else as the environment says, else 0 for all cores."""
+    given = os.environ.get("BEZSOMA_THREADS", "0") if asked is None else asked
+    try:
+        number = int(given)
+    except ValueError:
+        number = -1
+    if isinstance(given, bool | float) or not 0 <= number <= MOST_THREADS:
+        where = "BEZSOMA_THREADS" if asked is None else "threads"
+        raise InputError(
+            f"{where} = {given!r} is no number of threads: give 1 to {MOST_THREADS}, or 0 for all "
+            "cores"
+        )
+    return number
+
+
+def _equations(body: Body, solver: str, threads: int, watch: _Watch) -> tuple[str, str, Equations]:
     with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
-        lam, mu = moduli(body)
+        lame = lame_constants(body)
         net = ControlNet(body.mesh, body.degree)
     with watch.stage("supports", f"{3 * net.count} unknowns"):
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
+    chosen, why = _choice(int(known.mask.size - known.mask.sum()), solver)
+    refuse_what_does_not_fit(net, chosen)
     with watch.stage("loads", f"{len(body.loads)} given"):
         loads = forces(body, net)
-    with watch.stage("matrix", f"{3 * net.count} unknowns"):
-        matrix = assembled(net, lam, mu)
-    return Equations(net, matrix, loads, known.mask, known.values, known.of_support)
+    with watch.stage("stiffness", f"{3 * net.count} unknowns"):
+        stiffness = (
+            MatrixFree(net, lame, threads)
+            if chosen == "multigrid"
+            else assembled(net, *moduli(body), threads)
+        )
+    return (
+        chosen,
+        why,
+        Equations(net, stiffness, loads, known.mask, known.values, known.of_support),
+    )
 
 
-def _solved(equations: Equations, b: Floats, solver: str, rtol: float, watch: _Watch) -> _Found:
-    chosen, why = _choice(equations, b, solver)
+def _choice(free: int, solver: str) -> tuple[str, str]:
+    if solver != "auto":
+        return solver, "as asked for"
+    if free <= DIRECT_UP_TO:
+        return "direct", f"since {free} unknowns are not more than {DIRECT_UP_TO}"
+    return "multigrid", f"since {free} unknowns are more than {DIRECT_UP_TO}"
+
+
+def _solved(
+    equations: Equations, b: Floats, chosen: str, why: str, rtol: float, watch: _Watch
+) -> _Found:
     with watch.stage("solving", f"{chosen}: {why}"):
-        if chosen == "nothing":
+        if not b.any():
+            why = "no free component is out of balance"
             return _Found(np.zeros_like(b), f"nothing to solve: {why}")
         size = float(np.abs(b).max())  # so that squares of tiny or huge forces stay in range
-        method = _directly if chosen == "direct" else _iteratively
+        method = _directly if isinstance(equations.stiffness, BlockMatrix) else _without_a_matrix
+        if chosen == "cg":
+            method = _iteratively
         found = method(equations, b / size, rtol, watch.iterations(rtol))
         return replace(found, x=found.x * size, method=f"{found.method}, {why}")
 
 
-def _choice(equations: Equations, b: Floats, solver: str) -> tuple[str, str]:
-    if not b.any():
-        return "nothing", "no free component is out of balance"
-    if solver != "auto":
-        return solver, "as asked for"
-    if equations.free <= DIRECT_UP_TO:
-        return "direct", f"since {equations.free} unknowns are not more than {DIRECT_UP_TO}"
-    return "cg", f"since {equations.free} unknowns are more than {DIRECT_UP_TO}"
-
-
 def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
-    x, history = direct(equations, b, report)
+    assert isinstance(equations.stiffness, BlockMatrix)
+    x, history = direct(equations, equations.stiffness, b, report)
     if not history[-1] <= rtol:
         raise NotConverged(
             f"the direct solver is left with {history[-1]:.3g} of the residual at zero free "
@@ -180,25 +224,38 @@ def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _
     return _Found(x, "direct (SuperLU, scaled and refined)", history)
 
 
+def _without_a_matrix(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
+    assert isinstance(equations.stiffness, MatrixFree)
+    x, history = multigrid(equations, equations.stiffness, b, rtol, report)
+    how = f"{equations.stiffness.kernel.instructions}, {equations.stiffness.kernel.threads} threads"
+    return _Found(x, f"conjugate gradients with entity blocks and multigrid ({how})", history)
+
+
 def _iteratively(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
-    factor = incomplete_cholesky(equations.matrix, equations.held)
+    assert isinstance(equations.stiffness, BlockMatrix)
+    factor = incomplete_cholesky(equations.stiffness, equations.held)
     x, history = conjugate_gradients(equations.free_product, factor, b, rtol, report=report)
     raised = f" of the diagonal raised by {factor.shift:g} of itself" if factor.shift else ""
     return _Found(x, f"conjugate gradients with incomplete Cholesky{raised}", history)
 
 
-def _solution(body: Body, equations: Equations, found: _Found, watch: _Watch) -> Solution:
+def _solution(
+    body: Body, equations: Equations, found: _Found, threads: int, watch: _Watch
+) -> Solution:
     with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
         displacement = Field(equations.net, frozen(equations.given + found.x))
-        energy, volume_change = energy_and_volume_change(body, displacement)
+        operator = equations.stiffness
+        if not isinstance(operator, MatrixFree):
+            operator = MatrixFree(equations.net, lame_constants(body), threads)
+        energy, swelling = operator.energy(displacement.controls), volume_change(displacement)
         supports = reactions(equations, displacement.controls)
-    _check_range(np.array([energy, volume_change]), "the energy and the change of volume")
+    _check_range(np.array([energy, swelling]), "the energy and the change of volume")
     return Solution(
         body,
         displacement,
         supports,
         energy,
-        volume_change,
+        swelling,
         found.method,
         tuple(found.history),
         max(len(found.history) - 1, 0),

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""K u without a matrix and without quadrature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from bezsoma import _core
+from bezsoma.arrays import Floats
+from bezsoma.mesh.control_net import ControlNet
+
+Int32s = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixFree:
+    """The stiffness of a net as what it does: forces (c, 3) N for displacements (c, 3) mm.
+
+    On an affine tet the gradient of a field of degree n is n times differences of its controls,
+    of degree n - 1; stress follows control by control; a sum over degree elevations E_j applies
+    the mass matrix of that degree, and the transposed differences take the moments to forces:
+
+        H_b = n sum_i u_{b+e_i} g_i^T,  T = lam tr(H) I + mu (H + H^T)
+        f_a = n V sum_i (M T)_{a-e_i} g_i,  M = sum_j a_j E_j E_j^T
+
+    See docs/theory/fast.md. `lame` (regions, 2) holds lambda and mu in MPa of the regions of the
+    mesh. The answer has the same bits for any number of `threads` (0: all cores). `instructions`
+    names one of `_core.instruction_sets()`; empty takes the widest that the processor has.
+
+    The assembled matrix is the proof:
+
+    >>> from bezsoma.equations.assembled import assembled
+    >>> from bezsoma.mesh.solids import block
+    >>> net = ControlNet(block(cells=2), 4)
+    >>> K = assembled(net, np.full(48, 0.6), np.full(48, 0.4))
+    >>> u = np.sin(7 * net.points)
+    >>> f = MatrixFree(net, np.array([[0.6, 0.4]])) @ u
+    >>> bool(abs(f - K @ u).max() < 1e-13 * abs(f).max())
+    True
+    """
+
+    net: ControlNet
+    lame: Floats
+    threads: int = 0
+    instructions: str = ""
+
+    @cached_property
+    def kernel(self) -> _core.MatrixFree:
+        """The core's side of it."""
+        mesh, order = self.net.mesh, self.net.morton
+        return _core.MatrixFree(
+            self.net.degree,
+            self.runs,
+            np.ascontiguousarray(mesh.gradients[order]),
+            np.ascontiguousarray(mesh.volumes[order]),
+            mesh.region[order].astype(np.int32),
+            np.ascontiguousarray(self.lame),
+            self.threads,
+            self.instructions,
+        )
+
+    @cached_property
+    def runs(self) -> Int32s:
+        """The first control of each entity of each tet (t, 4 to 15), tets in Morton order."""
+        mesh, starts = self.net.mesh, self.net.starts
+        everyone = np.arange(len(mesh.tets))[:, None]
+        parts = (mesh.tets, mesh.edges_of_tet, mesh.faces_of_tet, everyone)
+        columns = [start[part] for start, part in zip(starts, parts, strict=False)]
+        return np.concatenate(columns, axis=1)[self.net.morton].astype(np.int32)
+
+    def __matmul__(self, x: Floats) -> Floats:
+        """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N."""
+        sides = np.ascontiguousarray(x, dtype=np.float64).reshape(len(x), 3, -1)
+        y = np.empty_like(sides)
+        self.kernel.apply(sides, y)
+        return y.reshape(x.shape)
+
+    def single(self, x: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+        """K x in float32 throughout, (c, 3) or (c, 3, s)."""
+        sides = np.ascontiguousarray(x, dtype=np.float32).reshape(len(x), 3, -1)
+        y = np.empty_like(sides)
+        self.kernel.apply_single(sides, y)
+        return y.reshape(x.shape)
+
+    def energy(self, x: Floats) -> float:
+        """The stored energy int tau : eps / 2 [N mm], the first term of the paper's eq. 7.
+
+        From gradients rather than as x . K x / 2: where supports carry a body along, displacements
+        are large and strains small, and in x . K x large terms would cancel.
+        """
+        return self.kernel.work(np.ascontiguousarray(x)) / 2

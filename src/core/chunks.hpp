@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the tets of a mesh are cut into chunks that one thread works on at a time.
+//
+// Tets come in the order of the walk that numbered the controls, so the controls that a chunk
+// touches first are one range of numbers: it owns them. The others it touches (foreign ones) are
+// owned by earlier chunks; forces on them are written beside and added by the owner afterwards, in
+// the order of the chunks. Chunks depend on the mesh alone, so the number of threads shows nowhere
+// in the answer.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace bezsoma {
+
+/// Entities of a tet that hold controls at this degree, and the controls inside each.
+int entities_of_tet(int degree);
+int controls_inside(int degree, int entity);
+
+/// A run of controls that a chunk touches but does not own.
+struct Run {
+    std::int32_t control; // the first of the run
+    std::int32_t length;  // controls
+};
+
+/// A run that another chunk added to: what its owner has to sum.
+struct Addition {
+    Run run;
+    std::int64_t from; // the first control of the run among all foreign controls
+};
+
+struct Chunk {
+    std::int64_t tet, tets;      // its tets are [tet, tet + tets) of the walk
+    std::int32_t control, owned; // it owns controls [control, control + owned)
+    std::int64_t foreign_begin;  // its foreign controls begin here among those of all chunks
+    std::int32_t foreign;        // how many they are
+    std::vector<Run> runs;       // they, run by run
+    std::vector<Addition> added; // what other chunks add to its own, in the order of the chunks
+};
+
+struct Chunks {
+    int degree;
+    std::int64_t controls;
+    std::int64_t foreign; // foreign controls of all chunks
+    std::vector<Chunk> parts;
+    std::vector<std::int32_t> local; // (tets, entities): where each run begins in its chunk, own
+                                     // controls first, then the foreign runs one after another
+    std::int32_t largest;            // the most controls that a chunk touches
+};
+
+/// Cuts the walk into chunks of about `target` controls.
+///
+/// first (tets, entities): the first control of each entity of each tet, tets in the order of the
+/// walk that numbered them.
+Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target);
+
+} // namespace bezsoma

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "conjugate_gradients.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace bezsoma {
+
+namespace {
+
+constexpr std::size_t piece = 16384; // numbers a thread takes at a time; sums add piece by piece
+constexpr std::size_t padding = 16;
+
+/// Vectors of one length, worked on in pieces that do not depend on the number of threads.
+class Pieces {
+public:
+    Pieces(std::size_t length, Team &team)
+        : length_(length), team_(team), sums_((length + piece - 1) / piece) {}
+
+    /// The sum over all i of term(i), which may also write at i.
+    template <class Term> double sum(const Term &term) {
+        team_.run(sums_.size(), [&](std::size_t p, std::size_t) {
+            // Eight partial sums let the processor overlap additions.
+            double part[8] = {};
+            const std::size_t end = std::min((p + 1) * piece, length_);
+            std::size_t i = p * piece;
+            for (; i + 8 <= end; i += 8)
+                for (std::size_t l = 0; l < 8; ++l)
+                    part[l] += term(i + l);
+            for (; i < end; ++i)
+                part[0] += term(i);
+            sums_[p] = std::accumulate(part, part + 8, 0.0);
+        });
+        return std::accumulate(sums_.begin(), sums_.end(), 0.0);
+    }
+
+private:
+    std::size_t length_;
+    Team &team_;
+    std::vector<double> sums_;
+};
+
+} // namespace
+
+Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner &blocks,
+                                const VertexSolver &vertices, const std::uint8_t *fixed,
+                                const double *f, double *x, double reference, double rtol, int most,
+                                Team &team, const Watch &watch) {
+    const std::size_t length = 3 * static_cast<std::size_t>(k.controls());
+    Pieces pieces(length, team);
+    std::vector<double> r(length + padding), p(length + padding), q(length);
+    std::vector<float> coarse_r, coarse_z;
+    Convergence found;
+    const auto true_residual = [&] {
+        k.apply(x, q.data());
+        return std::sqrt(pieces.sum([&](std::size_t i) {
+            r[i] = fixed[i] ? 0.0 : f[i] - q[i];
+            return r[i] * r[i];
+        }));
+    };
+    double norm = true_residual(), before = 0; // `before` is r.z of the last step, 0 at a start
+    found.history.push_back(norm / reference);
+    for (int i = 0;; ++i) {
+        if (norm <= rtol * reference) {
+            norm = true_residual();
+            found.converged = norm <= rtol * reference * (1 + 1e-6);
+            before = 0;
+        }
+        found.residual = norm / reference;
+        watch(i, found.residual);
+        if (found.converged || i == most)
+            return found;
+        double rz = blocks.forward(r.data(), norm, coarse_r);
+        coarse_z.resize(coarse_r.size());
+        vertices(coarse_r.data(), coarse_z.data());
+        rz += norm * norm *
+              std::inner_product(coarse_r.begin(), coarse_r.end(), coarse_z.begin(), 0.0);
+        blocks.back(coarse_z, norm, before > 0 ? rz / before : 0.0, p.data());
+        before = rz;
+        pieces.sum([&](std::size_t j) { return fixed[j] ? p[j] = 0.0 : 0.0; });
+        k.apply(p.data(), q.data());
+        const double pq = pieces.sum([&](std::size_t j) { return p[j] * q[j]; });
+        if (!(pq > 0 && rz > 0)) {
+            found.indefinite = true;
+            return found;
+        }
+        const double alpha = rz / pq;
+        norm = std::sqrt(pieces.sum([&](std::size_t j) {
+            x[j] += alpha * p[j];
+            r[j] = fixed[j] ? 0.0 : r[j] - alpha * q[j];
+            return r[j] * r[j];
+        }));
+        found.history.push_back(norm / reference);
+    }
+}
+
+} // namespace bezsoma

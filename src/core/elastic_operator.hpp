@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "chunks.hpp"
+#include "kernels.hpp"
+#include "team.hpp"
+
+namespace bezsoma {
+
+/// What an operator is made from. Tets in the order of the walk that numbered the controls.
+struct ElasticTets {
+    int degree;
+    std::int64_t tets;
+    const std::int32_t *first;  // (tets, entities) first control of each entity
+    const double *gradients;    // (tets, 4, 3) grad L_i, 1/mm
+    const double *volumes;      // (tets,) mm3
+    const std::int32_t *region; // (tets,)
+    const double *lame;         // (regions, 2) lambda, mu in MPa
+    std::int32_t regions;
+};
+
+/// K u without a matrix, in float64 or float32, on one or several right-hand sides.
+///
+/// Per tet it keeps 9 numbers of geometry, 4 to 15 of where its controls lie and its region.
+template <class T> class ElasticOperator {
+public:
+    ElasticOperator(const ElasticTets &tets, const Kernels &kernels, Team &team);
+
+    /// f = K u, both (controls, 3, sides).
+    void apply(const T *u, T *f, int sides = 1);
+
+    /// int tau(u) : eps(u), N mm: twice the stored energy.
+    double work(const T *u);
+
+    std::int64_t controls() const { return chunks_.controls; }
+    int lanes() const { return lanes_; }
+    const Chunks &chunks() const { return chunks_; }
+
+private:
+    int width(int sides) const;
+    void pack(const ElasticTets &tets);
+    Batches<T> batches(std::size_t chunk, const T *u, T *f) const;
+    T *take_over(const Chunk &chunk, const T *u, int sides, T *to) const;
+    void forces_of_chunk(std::size_t chunk, const T *u, T *f, int sides, std::vector<T> &scratch);
+    void add_foreign(std::size_t chunk, T *f, int sides) const;
+
+    Kernel<T> kernel_;
+    int lanes_;
+    Team &team_;
+    Chunks chunks_;
+    std::vector<std::int64_t> batch_;     // (chunks + 1,) the first batch of each chunk
+    std::vector<std::int32_t> first_;     // (batches, entities, lanes)
+    std::vector<std::int32_t> region_;    // (batches, lanes)
+    std::vector<T> geometry_;             // (batches, 9, lanes)
+    std::vector<T> lame_;                 // (regions, 2)
+    std::vector<T> foreign_;              // (foreign controls, 3, sides)
+    std::vector<std::vector<T>> scratch_; // a thread each
+};
+
+} // namespace bezsoma

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "galerkin.hpp"
+
+namespace bezsoma {
+
+namespace {
+
+constexpr std::int64_t slab = 8192; // rows of A P that stand at a time
+
+std::int32_t of(std::size_t i) { return static_cast<std::int32_t>(i); }
+
+/// The pattern of A P.
+Sparsity pattern_of_product(const BlockRows &a, const BlockRows &p, std::int64_t columns,
+                            Team &team) {
+    return sparsity(team, a.rows(), columns, [&](std::size_t i, const auto &take) {
+        for (auto at = size_of(a.start[i]); at < size_of(a.start[i + 1]); ++at) {
+            const auto j = size_of(a.column[at]);
+            for (auto to = size_of(p.start[j]); to < size_of(p.start[j + 1]); ++to)
+                take(p.column[to]);
+        }
+    });
+}
+
+Sparsity pattern_of_coarse(const Sparsity &ap, const Columns &columns, Team &team) {
+    const auto count = static_cast<std::int64_t>(columns.start.size()) - 1;
+    return sparsity(team, count, count, [&](std::size_t g, const auto &take) {
+        for (auto e = size_of(columns.start[g]); e < size_of(columns.start[g + 1]); ++e) {
+            const auto i = size_of(columns.row[e]);
+            for (auto at = size_of(ap.start[i]); at < size_of(ap.start[i + 1]); ++at)
+                take(ap.column[at]);
+        }
+    });
+}
+
+/// One row of A P, (columns of the row, n) rows of six in eight.
+template <int n>
+void product_row(const BlockRows &a, const BlockRows &p, std::size_t i,
+                 const std::vector<std::int32_t> &place, Eight *row) {
+    Eight y[n];
+    for (auto at = size_of(a.start[i]); at < size_of(a.start[i + 1]); ++at) {
+        const float *block = a.value.data() + at * n * n;
+        const auto j = size_of(a.column[at]);
+        for (auto from = size_of(p.start[j]); from < size_of(p.start[j + 1]); ++from) {
+            Eight *to = row + place[size_of(p.column[from])] * n;
+            for (int l = 0; l < n; ++l)
+                load(p.value.data() + (from * n + size_of(l)) * motions, y[l]);
+            for (int k = 0; k < n; ++k) {
+                Eight sum = to[k];
+                for (int l = 0; l < n; ++l)
+                    sum += block[l * n + k] * y[l];
+                to[k] = sum;
+            }
+        }
+    }
+}
+
+/// to (6 columns of six in eight) += P^T (A P) for one pair of blocks.
+template <int n> inline void add_pair(const float *p, const Eight *ap, Eight *to) {
+    Eight x[n];
+    for (int k = 0; k < n; ++k)
+        load(p + k * motions, x[k]);
+    for (int m = 0; m < motions; ++m) {
+        Eight sum = to[m];
+        for (int k = 0; k < n; ++k)
+            sum += x[k] * ap[k][m];
+        to[m] = sum;
+    }
+}
+
+/// Forms A P for a slab of rows, then adds its part to every coarse row: sums run over rows in
+/// ascending order whatever the number of threads.
+template <int n> class Slabs {
+public:
+    Slabs(const BlockRows &a, const BlockRows &p, const Columns &columns, const Sparsity &ap,
+          BlockRows &coarse, Team &team)
+        : a_(a), p_(p), columns_(columns), ap_(ap), coarse_(coarse), team_(team),
+          places_(team.size()), sums_(team.size()),
+          next_(columns.start.begin(), columns.start.end() - 1) {}
+
+    void run() {
+        for (first_ = 0; first_ < a_.rows(); first_ += slab) {
+            last_ = std::min(first_ + slab, a_.rows());
+            const std::int64_t begin = ap_.start[size_of(first_)];
+            rows_.assign(size_of(ap_.start[size_of(last_)] - begin) * n, Eight{});
+            each_row(team_, last_ - first_, [&](std::size_t i, std::size_t thread) {
+                product(size_of(first_) + i, places_[thread]);
+            });
+            each_row(team_, coarse_.rows(), [&](std::size_t g, std::size_t thread) {
+                add_to(g, places_[thread], sums_[thread]);
+            });
+        }
+    }
+
+private:
+    Eight *row(std::size_t i) {
+        return rows_.data() + size_of(ap_.start[i] - ap_.start[size_of(first_)]) * n;
+    }
+
+    void product(std::size_t i, std::vector<std::int32_t> &place) {
+        place.resize(size_of(coarse_.rows()));
+        for (auto at = ap_.start[i]; at < ap_.start[i + 1]; ++at)
+            place[size_of(ap_.column[size_of(at)])] = static_cast<std::int32_t>(at - ap_.start[i]);
+        product_row<n>(a_, p_, i, place, row(i));
+    }
+
+    /// The upper half of coarse row g.
+    void add_to(std::size_t g, std::vector<std::int32_t> &place, std::vector<Eight> &sums) {
+        auto e = size_of(next_[g]);
+        const auto end = size_of(columns_.start[g + 1]);
+        if (e == end || columns_.row[e] >= last_)
+            return;
+        place.resize(size_of(coarse_.rows()));
+        const std::int64_t own = coarse_.start[g];
+        for (auto at = own; at < coarse_.start[g + 1]; ++at)
+            place[size_of(coarse_.column[size_of(at)])] = static_cast<std::int32_t>(at - own);
+        sums.assign(size_of(coarse_.start[g + 1] - own) * motions, Eight{});
+        for (; e < end && columns_.row[e] < last_; ++e) {
+            const auto i = size_of(columns_.row[e]);
+            const float *block = p_.value.data() + std::size_t{columns_.at[e]} * n * motions;
+            const Eight *from = row(i);
+            for (auto at = size_of(ap_.start[i]); at < size_of(ap_.start[i + 1]); ++at, from += n)
+                if (ap_.column[at] >= of(g))
+                    add_pair<n>(block, from,
+                                sums.data() + place[size_of(ap_.column[at])] * motions);
+        }
+        next_[g] = static_cast<std::int64_t>(e);
+        float *to = coarse_.value.data() + size_of(own) * motions * motions;
+        for (const Eight &column : sums)
+            for (int k = 0; k < motions; ++k)
+                *to++ += column[k];
+    }
+
+    const BlockRows &a_, &p_;
+    const Columns &columns_;
+    const Sparsity &ap_;
+    BlockRows &coarse_;
+    Team &team_;
+    std::vector<std::vector<std::int32_t>> places_; // a thread each
+    std::vector<std::vector<Eight>> sums_;
+    std::vector<std::int64_t> next_; // of each coarse row: the first entry not yet added
+    std::vector<Eight> rows_;        // of A P
+    std::int64_t first_ = 0, last_ = 0;
+};
+
+/// The lower half from the upper.
+void mirror(BlockRows &a, Team &team) {
+    each_row(team, a.rows(), [&](std::size_t i, std::size_t) {
+        for (auto at = size_of(a.start[i]); at < size_of(a.start[i + 1]); ++at) {
+            if (a.column[at] > of(i))
+                break;
+            const auto j = size_of(a.column[at]);
+            const auto other = std::lower_bound(a.column.begin() + a.start[j],
+                                                a.column.begin() + a.start[j + 1], of(i)) -
+                               a.column.begin();
+            const float *from = a.value.data() + size_of(other) * motions * motions;
+            float *to = a.value.data() + at * motions * motions;
+            for (int k = 0; k < motions; ++k)
+                for (int l = 0; l < (j == i ? k : motions); ++l)
+                    to[k * motions + l] = from[l * motions + k];
+        }
+    });
+}
+
+} // namespace
+
+Columns columns_of(const BlockRows &a, std::int64_t columns) {
+    Columns found{std::vector<std::int64_t>(size_of(columns) + 1),
+                  std::vector<std::int32_t>(a.column.size()),
+                  std::vector<std::uint32_t>(a.column.size())};
+    for (const std::int32_t c : a.column)
+        ++found.start[size_of(c) + 1];
+    std::partial_sum(found.start.begin(), found.start.end(), found.start.begin());
+    std::vector<std::int64_t> next(found.start.begin(), found.start.end() - 1);
+    for (std::size_t i = 0; i < size_of(a.rows()); ++i)
+        for (auto at = size_of(a.start[i]); at < size_of(a.start[i + 1]); ++at) {
+            const auto to = size_of(next[size_of(a.column[at])]++);
+            found.row[to] = of(i);
+            found.at[to] = static_cast<std::uint32_t>(at);
+        }
+    return found;
+}
+
+std::optional<BlockRows> galerkin(const BlockRows &a, const BlockRows &p, const Columns &columns,
+                                  std::size_t most, Team &team) {
+    const auto count = static_cast<std::int64_t>(columns.start.size()) - 1;
+    const Sparsity ap = pattern_of_product(a, p, count, team);
+    Sparsity found = pattern_of_coarse(ap, columns, team);
+    if (found.column.size() > most)
+        return std::nullopt;
+    BlockRows coarse = with_pattern(std::move(found), motions, motions);
+    if (a.high == 3)
+        Slabs<3>(a, p, columns, ap, coarse, team).run();
+    else
+        Slabs<6>(a, p, columns, ap, coarse, team).run();
+    mirror(coarse, team);
+    return coarse;
+}
+
+} // namespace bezsoma

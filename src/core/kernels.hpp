@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels of one instruction set, as function pointers: what differs between processors.
+#pragma once
+
+#include <cstdint>
+
+namespace bezsoma {
+
+/// Tets of one chunk in batches of one per lane, and the vectors they work on.
+///
+/// first (batches, entities, lanes): the local control at which each entity's run begins;
+/// geometry (batches, 9, lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes);
+/// lame (regions, 2): lambda, mu; u, f (controls, 3) over the chunk's own controls, padded by 16
+/// numbers that may be read but are not used. f is added to.
+template <class T> struct Batches {
+    std::int64_t count;
+    const std::int32_t *first;
+    const T *geometry;
+    const std::int32_t *region;
+    const T *lame;
+    const T *u;
+    T *f;
+};
+
+/// A vertex, edge, face or interior with the run of controls inside it.
+struct Entity {
+    std::int32_t control; // the first of the run
+    std::int32_t dim;
+    std::int32_t vertices[4]; // dim + 1 controls of the degree-1 net, ascending vertices
+};
+
+/// Entities of one dimension in batches of one per lane, with the inverses of their blocks.
+///
+/// value (batches, rows (rows + 1) / 2, lanes): the lower triangles, row after row; z (batches,
+/// rows, lanes) and moments (batches, dim + 1, 3, lanes) are written by `forward`, z is read by
+/// `back`.
+struct BlockBatches {
+    std::int64_t count;
+    const std::int32_t *control;  // (batches, lanes) the first control, 0 for a lane without entity
+    const std::int32_t *vertices; // (batches, dim + 1, lanes)
+    const float *value;
+    float *z;
+    float *moments;
+};
+
+struct BlockKernel {
+    /// z = B (scale r), moments_i = sum_a (a_i / n) scale r_a; returns the sum of scale r . z.
+    double (*forward)(const BlockBatches &, const double *r, double scale);
+    /// p = beta p + back_scale (z + sum_i (a_i / n) coarse_(vertex i)), for the controls of real
+    /// lanes (those of `count` entities, the last batch may be part full).
+    void (*back)(const BlockBatches &, std::int64_t entities, const float *coarse, double scale,
+                 double beta, double *p);
+};
+
+/// What is done on batches. apply_many takes several right-hand sides beside each other, u and f
+/// (controls, 3, sides): lanes are sides there, and batches are read tet by tet.
+template <class T> struct Kernel {
+    void (*apply)(const Batches<T> &);
+    void (*apply_many)(const Batches<T> &, int sides);
+    double (*work)(const Batches<T> &); // sum over tets of int tau : eps
+};
+
+struct Kernels {
+    const char *name;
+    int lanes64, lanes32;
+    Kernel<double> f64[10]; // by degree - 1
+    Kernel<float> f32[10];
+    BlockKernel blocks[10][4]; // by degree - 1 and dimension; empty where no control is inside
+};
+
+/// The widest instruction set that this processor has; or the one named.
+const Kernels &best_kernels();
+const Kernels *kernels_named(const char *name);
+
+} // namespace bezsoma

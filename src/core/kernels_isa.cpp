@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled once for each instruction set, with BEZSOMA_ISA naming it and BEZSOMA_BYTES the width
+// of its registers. Nothing of the standard library is included: an inline function of it compiled
+// here for a wide processor could be the copy that the linker keeps for all.
+#include "kernels.hpp"
+
+#include "elastic_kernel.hpp"
+
+#include "block_kernel.hpp"
+
+namespace bezsoma::BEZSOMA_ISA {
+
+/// What a batch holds of its tets.
+template <class T, int lanes>
+BEZSOMA_INLINE Batch<T, lanes> batch_of_tets(const Batches<T> &b, std::int64_t i) {
+    Batch<T, lanes> tet = {};
+    for (int k = 0; k < 9; ++k)
+        tet.g[k / 3][k % 3] = load<T, lanes>(b.geometry + (9 * i + k) * lanes);
+    for (int l = 0; l < lanes; ++l) {
+        tet.lambda[l] = b.lame[2 * b.region[i * lanes + l]];
+        tet.mu[l] = b.lame[2 * b.region[i * lanes + l] + 1];
+    }
+    return tet;
+}
+
+template <int n, class T, int lanes> void apply(const Batches<T> &b) {
+    Lanes<T, lanes> u[3 * controls(n)], f[3 * controls(n)];
+    for (std::int64_t i = 0; i < b.count; ++i) {
+        const std::int32_t *first = b.first + i * entities(n) * lanes;
+        gather<n, T, lanes>(b.u, first, u);
+        elastic_forces<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u, f);
+        scatter<n, T, lanes>(b.f, first, f);
+    }
+}
+
+template <int n, class T, int lanes> double work(const Batches<T> &b) {
+    Lanes<T, lanes> u[3 * controls(n)], sum = {};
+    for (std::int64_t i = 0; i < b.count; ++i) {
+        gather<n, T, lanes>(b.u, b.first + i * entities(n) * lanes, u);
+        sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u);
+    }
+    double all = 0;
+    for (int l = 0; l < lanes; ++l)
+        all += sum[l];
+    return all;
+}
+
+template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
+    using R = Lanes<T, lanes>;
+    R u[3 * controls(n)], f[3 * controls(n)];
+    for (std::int64_t i = 0; i < b.count; ++i)
+        for (int lane = 0; lane < lanes; ++lane) {
+            const std::int32_t *first = b.first + i * entities(n) * lanes;
+            Batch<T, lanes> tet = {};
+            for (int k = 0; k < 9; ++k)
+                tet.g[k / 3][k % 3] = R{} + b.geometry[(9 * i + k) * lanes + lane];
+            tet.lambda = R{} + b.lame[2 * b.region[i * lanes + lane]];
+            tet.mu = R{} + b.lame[2 * b.region[i * lanes + lane] + 1];
+            for (int side = 0; side < sides; side += lanes) {
+                each_piece_of_tet<n, 512>([&]<int rows>(auto entity, int, auto row) {
+                    const T *from = b.u + 3 * std::int64_t{first[entity * lanes + lane]} * sides;
+#pragma GCC unroll 16
+                    for (int r = 0; r < rows; ++r)
+                        u[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
+                });
+                elastic_forces<n, T, lanes>(tet, u, f);
+                each_piece_of_tet<n, 512>([&]<int rows>(auto entity, int, auto row) {
+                    T *to = b.f + 3 * std::int64_t{first[entity * lanes + lane]} * sides;
+#pragma GCC unroll 16
+                    for (int r = 0; r < rows; ++r)
+                        store<T, lanes>(to + r * sides + side,
+                                        load<T, lanes>(to + r * sides + side) +
+                                            f[entity_order<n>.row[row + r]]);
+                });
+            }
+        }
+}
+
+constexpr int lanes64 = BEZSOMA_BYTES / 8, lanes32 = BEZSOMA_BYTES / 4;
+
+#define BEZSOMA_DEGREE(T, lanes, n) {apply<n, T, lanes>, apply_many<n, T, lanes>, work<n, T, lanes>}
+#define BEZSOMA_DEGREES(T, lanes)                                                                  \
+    {BEZSOMA_DEGREE(T, lanes, 1), BEZSOMA_DEGREE(T, lanes, 2), BEZSOMA_DEGREE(T, lanes, 3),        \
+     BEZSOMA_DEGREE(T, lanes, 4), BEZSOMA_DEGREE(T, lanes, 5), BEZSOMA_DEGREE(T, lanes, 6),        \
+     BEZSOMA_DEGREE(T, lanes, 7), BEZSOMA_DEGREE(T, lanes, 8), BEZSOMA_DEGREE(T, lanes, 9),        \
+     BEZSOMA_DEGREE(T, lanes, 10)}
+template <int n, int dim> consteval BlockKernel block_kernel() {
+    if constexpr (inside(n, dim) > 0)
+        return {forward<n, dim, lanes64>, back<n, dim, lanes64>};
+    else
+        return {};
+}
+
+#define BEZSOMA_BLOCKS(n)                                                                          \
+    {block_kernel<n, 0>(), block_kernel<n, 1>(), block_kernel<n, 2>(), block_kernel<n, 3>()}
+#define BEZSOMA_TEXT_OF(name) #name
+#define BEZSOMA_TEXT(name) BEZSOMA_TEXT_OF(name)
+
+extern const Kernels kernels;
+constinit const Kernels kernels = {BEZSOMA_TEXT(BEZSOMA_ISA),
+                                   lanes64,
+                                   lanes32,
+                                   BEZSOMA_DEGREES(double, lanes64),
+                                   BEZSOMA_DEGREES(float, lanes32),
+                                   {BEZSOMA_BLOCKS(1), BEZSOMA_BLOCKS(2), BEZSOMA_BLOCKS(3),
+                                    BEZSOMA_BLOCKS(4), BEZSOMA_BLOCKS(5), BEZSOMA_BLOCKS(6),
+                                    BEZSOMA_BLOCKS(7), BEZSOMA_BLOCKS(8), BEZSOMA_BLOCKS(9),
+                                    BEZSOMA_BLOCKS(10)}};
+
+} // namespace bezsoma::BEZSOMA_ISA

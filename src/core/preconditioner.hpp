@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "chunks.hpp"
+#include "elastic_operator.hpp"
+#include "entities.hpp"
+#include "kernels.hpp"
+#include "team.hpp"
+
+namespace bezsoma {
+
+/// z = about A^-1 r for the problem of degree 1 on the same vertices, both (vertices, 3).
+using VertexSolver = std::function<void(const float *r, float *z)>;
+
+/// z = sum over entities of the inverse of their block, plus the degree-1 problem: additive, so
+/// that an iteration applies the operator once.
+///
+/// The degree-1 problem spans what is smooth, where the blocks are weak; the blocks span what is
+/// rough within a tet. Works in float32 on the residual scaled to norm one.
+class Preconditioner {
+public:
+    Preconditioner(const ElasticTets &tets, const std::int32_t *corners, std::int64_t vertices,
+                   const std::uint8_t *fixed, const Chunks &chunks, const Kernels &kernels,
+                   Team &team);
+
+    /// The half that reads r: keeps z of the blocks, gives the forces of the degree-1 problem in
+    /// `coarse` (vertices, 3) and returns r . z of the blocks. r is padded by 16 numbers.
+    double forward(const double *r, double norm, std::vector<float> &coarse);
+
+    /// p = beta p + z, with z made of the blocks' and the degree-1 answer. p is padded likewise.
+    void back(const std::vector<float> &coarse, double norm, double beta, double *p);
+
+    std::size_t bytes() const;
+
+private:
+    /// The entities of one dimension in one chunk.
+    struct Group {
+        std::int64_t entities, batches;
+        std::int64_t batch; // the first among all of that dimension
+    };
+    void arrange(const Entities &entities);
+    void fill(const ElasticTets &tets, const Entities &entities, const std::uint8_t *fixed);
+    void list_moments(std::int64_t vertices);
+    BlockBatches batches(std::size_t part, std::size_t dim);
+
+    int degree_, lanes_;
+    const BlockKernel *kernel_;
+    Team &team_;
+    std::vector<std::int64_t> range_; // (parts + 1,) the first entity of each chunk
+    std::array<std::vector<Group>, 4> groups_;
+    std::array<std::int64_t, 4> rows_;
+    std::array<std::vector<std::int32_t>, 4> number_; // of the entity, -1 for a lane without one
+    std::array<std::vector<std::int32_t>, 4> control_, vertices_;
+    std::array<std::vector<float>, 4> value_, z_, moments_;
+    std::vector<std::int64_t> moment_start_; // (vertices + 1,)
+    std::vector<const float *> moment_;      // where a vertex' moments stand
+    std::vector<double> dots_;               // a chunk each
+};
+
+} // namespace bezsoma
