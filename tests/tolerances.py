@@ -32,3 +32,13 @@ ITERATIVE = 1e-6
 def patch(degree: int) -> float:
     """How exactly a polynomial of that degree has to come back from a solve."""
     return 1e-12 if degree <= 8 else 1e-10
+
+
+HUNG = 1e-11
+"""A body held at three vertices only: near-rigid motions are hardly resisted, so rounding grows."""
+
+SINGLE = 1e-5
+"""Forces by an operator in float32, relative to the largest."""
+
+ENERGY_NORM = 1e-7
+"""A solve by multigrid to 1e-8 against the direct solver, in the energy norm, relative."""
