@@ -106,10 +106,12 @@ std::vector<double> dense_factor(const BlockRows &a) {
 
 struct Aggregation::Level {
     Sweeps a;
-    BlockRows p = {}; // to the next coarser level
-    Columns columns = {};
-    std::vector<float> residual = {};  // here
-    std::vector<float> r = {}, z = {}; // on the coarser level
+    BlockRows p; // to the next coarser level
+    Columns columns;
+    std::vector<float> residual; // here
+    std::vector<float> r, z;     // on the coarser level
+
+    Level(BlockRows matrix, Team &team) : a(std::move(matrix), team) {}
 
     std::size_t bytes() const {
         return a.bytes() + p.bytes() + 12 * columns.row.size() + 8 * columns.start.size() +
@@ -122,7 +124,7 @@ Aggregation::Aggregation(BlockRows matrix, const double *points, const std::uint
     : team_(team) {
     std::vector<double> of_rows = rigid_motions(points, fixed, size_of(matrix.rows()));
     for (bool coarser = true; coarser;) {
-        levels_.push_back(std::make_unique<Level>(Sweeps(std::move(matrix), team)));
+        levels_.push_back(std::make_unique<Level>(std::move(matrix), team));
         Level &level = *levels_.back();
         if (level.a.matrix().rows() <= small) {
             factor_ = dense_factor(level.a.matrix());

@@ -149,9 +149,10 @@ void solve_cholesky(In<std::int64_t, -1> start, In<std::int32_t, -1> column,
 struct Walk {
     int degree;
     In<std::int32_t, -1, -1> first;
+    In<std::int64_t, -1> order;
     In<double, -1, 4, 3> gradients;
     In<double, -1> volumes;
-    In<std::int32_t, -1> region;
+    In<std::int64_t, -1> region;
     In<double, -1, 2> lame;
 
     bezsoma::ElasticTets tets() const {
@@ -159,17 +160,19 @@ struct Walk {
         require(first.shape(1) == static_cast<std::size_t>(bezsoma::entities_of_tet(degree)),
                 "first must have a column for each entity that holds controls");
         const std::size_t tets = volumes.shape(0);
-        require(tets > 0 && first.shape(0) == tets && gradients.shape(0) == tets &&
-                    region.shape(0) == tets,
-                "first, gradients, volumes and region must have one row a tet");
+        require(tets > 0 && first.shape(0) == tets && order.shape(0) == tets &&
+                    gradients.shape(0) == tets && region.shape(0) == tets,
+                "first, order, gradients, volumes and region must have one row a tet");
         const auto regions = static_cast<std::int32_t>(lame.shape(0));
         for (std::size_t t = 0; t < tets; ++t)
-            require(region.data()[t] >= 0 && region.data()[t] < regions,
-                    "region must number the rows of lame");
-        return {degree,         static_cast<std::int64_t>(tets),
-                first.data(),   gradients.data(),
-                volumes.data(), region.data(),
-                lame.data(),    regions};
+            require(region.data()[t] >= 0 && region.data()[t] < regions && order.data()[t] >= 0 &&
+                        order.data()[t] < static_cast<std::int64_t>(tets),
+                    "region must number the rows of lame, and order the tets");
+        return {degree,           static_cast<std::int64_t>(tets),
+                first.data(),     order.data(),
+                gradients.data(), volumes.data(),
+                region.data(),    lame.data(),
+                regions};
     }
 };
 
@@ -251,8 +254,10 @@ public:
         const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
                                                     held_vertices.data() + held_vertices.size());
         nb::gil_scoped_release released;
-        blocks_ = std::make_unique<bezsoma::Preconditioner>(
-            tets, corners.data(), vertices, held_.data(), k.k().chunks(), k.kernels(), k.team());
+        if (tets.degree > 1)
+            blocks_ = std::make_unique<bezsoma::Preconditioner>(tets, corners.data(), vertices,
+                                                                held_.data(), k.k().chunks(),
+                                                                k.kernels(), k.team());
         aggregation_ = std::make_unique<bezsoma::Aggregation>(
             bezsoma::vertex_matrix(tets, corners.data(), vertices, at_vertices.data(), k.team()),
             points.data(), at_vertices.data(), k.team());
@@ -266,7 +271,7 @@ public:
         {
             nb::gil_scoped_release released;
             found = bezsoma::conjugate_gradients(
-                k_.k(), *blocks_, [&](const float *r, float *z) { aggregation_->apply(r, z); },
+                k_.k(), blocks_.get(), [&](const float *r, float *z) { aggregation_->apply(r, z); },
                 held_.data(), f.data(), x.data(), reference, rtol, most, k_.team(),
                 [&](int iteration, double residual) {
                     nb::gil_scoped_acquire held;
@@ -276,23 +281,22 @@ public:
         return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite);
     }
 
-    /// z = B r, for tests of symmetry.
+    /// z = B r.
     void apply(In<double, -1, 3> r, Vectors z) {
         require(r.size() == held_.size() && z.size() == held_.size(),
                 "r and z must have one row a control");
         std::vector<double> from(r.data(), r.data() + r.size()), to(r.size() + 16);
         from.resize(to.size());
-        std::vector<float> down, up;
-        blocks_->forward(from.data(), 1.0, down);
-        up.resize(down.size());
-        aggregation_->apply(down.data(), up.data());
-        blocks_->back(up, 1.0, 0.0, to.data());
+        bezsoma::Search search{
+            blocks_.get(), [&](const float *x, float *y) { aggregation_->apply(x, y); }, k_.team()};
+        search.take(from.data(), 1.0, held_.size());
+        search.follow(1.0, 0.0, to.data());
         for (std::size_t i = 0; i < held_.size(); ++i)
             z.data()[i] = held_[i] ? 0.0 : to[i];
     }
 
     std::vector<std::int64_t> levels() const { return aggregation_->sizes(); }
-    std::size_t bytes() const { return blocks_->bytes() + aggregation_->bytes(); }
+    std::size_t bytes() const { return (blocks_ ? blocks_->bytes() : 0) + aggregation_->bytes(); }
 
 private:
     MatrixFree &k_;
@@ -321,12 +325,13 @@ NB_MODULE(_core, m) {
         .def(
             "__init__",
             [](MatrixFree *self, int degree, In<std::int32_t, -1, -1> first,
-               In<double, -1, 4, 3> gradients, In<double, -1> volumes, In<std::int32_t, -1> region,
-               In<double, -1, 2> lame, std::size_t threads, const std::string &instructions) {
-                new (self) MatrixFree({degree, first, gradients, volumes, region, lame}, threads,
-                                      instructions);
+               In<std::int64_t, -1> order, In<double, -1, 4, 3> gradients, In<double, -1> volumes,
+               In<std::int64_t, -1> region, In<double, -1, 2> lame, std::size_t threads,
+               const std::string &instructions) {
+                new (self) MatrixFree({degree, first, order, gradients, volumes, region, lame},
+                                      threads, instructions);
             },
-            "degree"_a, "first"_a, "gradients"_a, "volumes"_a, "region"_a, "lame"_a,
+            "degree"_a, "first"_a, "order"_a, "gradients"_a, "volumes"_a, "region"_a, "lame"_a,
             "threads"_a = 0, "instructions"_a = "")
         .def("apply", &MatrixFree::apply, "x"_a, "y"_a)
         .def("work", &MatrixFree::work, "x"_a)

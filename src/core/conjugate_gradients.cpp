@@ -12,6 +12,13 @@ namespace {
 constexpr std::size_t piece = 16384; // numbers a thread takes at a time; sums add piece by piece
 constexpr std::size_t padding = 16;
 
+template <class Work> void each(Team &team, std::size_t length, const Work &work) {
+    team.run((length + piece - 1) / piece, [&](std::size_t p, std::size_t) {
+        for (std::size_t i = p * piece; i < std::min((p + 1) * piece, length); ++i)
+            work(i);
+    });
+}
+
 /// Vectors of one length, worked on in pieces that do not depend on the number of threads.
 class Pieces {
 public:
@@ -43,14 +50,34 @@ private:
 
 } // namespace
 
-Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner &blocks,
+double Search::take(const double *r, double norm, std::size_t length) {
+    double blocks = 0;
+    if (blocks_) {
+        blocks = blocks_->forward(r, norm, r_);
+    } else {
+        r_.resize(length);
+        each(team_, length, [&](std::size_t i) { r_[i] = static_cast<float>(r[i] / norm); });
+    }
+    z_.resize(r_.size());
+    vertices_(r_.data(), z_.data());
+    return blocks + norm * norm * std::inner_product(r_.begin(), r_.end(), z_.begin(), 0.0);
+}
+
+void Search::follow(double norm, double beta, double *p) {
+    if (blocks_)
+        blocks_->back(z_, norm, beta, p);
+    else
+        each(team_, z_.size(), [&](std::size_t i) { p[i] = beta * p[i] + norm * double{z_[i]}; });
+}
+
+Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner *blocks,
                                 const VertexSolver &vertices, const std::uint8_t *fixed,
                                 const double *f, double *x, double reference, double rtol, int most,
                                 Team &team, const Watch &watch) {
     const std::size_t length = 3 * static_cast<std::size_t>(k.controls());
     Pieces pieces(length, team);
     std::vector<double> r(length + padding), p(length + padding), q(length);
-    std::vector<float> coarse_r, coarse_z;
+    Search search(blocks, vertices, team);
     Convergence found;
     const auto true_residual = [&] {
         k.apply(x, q.data());
@@ -71,12 +98,8 @@ Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner &bloc
         watch(i, found.residual);
         if (found.converged || i == most)
             return found;
-        double rz = blocks.forward(r.data(), norm, coarse_r);
-        coarse_z.resize(coarse_r.size());
-        vertices(coarse_r.data(), coarse_z.data());
-        rz += norm * norm *
-              std::inner_product(coarse_r.begin(), coarse_r.end(), coarse_z.begin(), 0.0);
-        blocks.back(coarse_z, norm, before > 0 ? rz / before : 0.0, p.data());
+        const double rz = search.take(r.data(), norm, length);
+        search.follow(norm, before > 0 ? rz / before : 0.0, p.data());
         before = rz;
         pieces.sum([&](std::size_t j) { return fixed[j] ? p[j] = 0.0 : 0.0; });
         k.apply(p.data(), q.data());

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "elastic_operator.hpp"
@@ -20,12 +21,31 @@ struct Convergence {
 /// Told the iteration and its relative residual.
 using Watch = std::function<void(int iteration, double residual)>;
 
+/// Preconditioning in two halves, so that an iteration passes over the vectors once less: what is
+/// read of the residual, and the new direction p = beta p + z.
+class Search {
+public:
+    /// Without blocks the degree-1 answer is all there is: the problem is of degree 1 itself.
+    Search(Preconditioner *blocks, VertexSolver vertices, Team &team)
+        : blocks_(blocks), vertices_(std::move(vertices)), team_(team) {}
+
+    /// Reads r (length), of that norm; returns r . z.
+    double take(const double *r, double norm, std::size_t length);
+    void follow(double norm, double beta, double *p);
+
+private:
+    Preconditioner *blocks_;
+    VertexSolver vertices_;
+    Team &team_;
+    std::vector<float> r_, z_; // of the degree-1 problem, of a residual scaled to norm one
+};
+
 /// Solves K x = f on the free components by preconditioned conjugate gradients in float64.
 ///
 /// x (controls, 3) comes in with the prescribed components and a first guess; `reference` is the
 /// norm that residuals are relative to. When the recurrence says that rtol is reached the true
 /// residual is formed; where that has drifted above, the iteration begins anew from it.
-Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner &blocks,
+Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner *blocks,
                                 const VertexSolver &vertices, const std::uint8_t *fixed,
                                 const double *f, double *x, double reference, double rtol, int most,
                                 Team &team, const Watch &watch);

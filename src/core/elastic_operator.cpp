@@ -55,11 +55,11 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
             for (std::int64_t e = 0; e < per_tet; ++e)
                 first_[size((batch * per_tet + e) * lanes_ + lane)] =
                     chunks_.local[size(tet * per_tet + e)];
-            const double root = std::sqrt(tets.volumes[tet]);
+            const double root = std::sqrt(tets.volume(tet));
             for (std::int64_t k = 0; k < 9; ++k)
                 geometry_[size((batch * 9 + k) * lanes_ + lane)] =
-                    static_cast<T>(root * tets.gradients[12 * tet + 3 + k]);
-            region_[size(batch * lanes_ + lane)] = tets.region[tet];
+                    static_cast<T>(root * tets.gradients(tet)[3 + k]);
+            region_[size(batch * lanes_ + lane)] = tets.region(tet);
         }
     });
     std::vector<std::int32_t>().swap(chunks_.local);

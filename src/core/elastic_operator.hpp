@@ -10,16 +10,27 @@
 
 namespace bezsoma {
 
-/// What an operator is made from. Tets in the order of the walk that numbered the controls.
+/// What an operator is made from: the tets of a mesh, and the walk over them that numbered the
+/// controls. Tet i of the walk is tet order[i] of the mesh.
 struct ElasticTets {
     int degree;
     std::int64_t tets;
-    const std::int32_t *first;  // (tets, entities) first control of each entity
-    const double *gradients;    // (tets, 4, 3) grad L_i, 1/mm
-    const double *volumes;      // (tets,) mm3
-    const std::int32_t *region; // (tets,)
-    const double *lame;         // (regions, 2) lambda, mu in MPa
+    const std::int32_t *first; // (tets, entities) first control of each entity, in the walk's order
+    const std::int64_t *order; // (tets,)
+    const double *gradients_;  // (tets, 4, 3) grad L_i, 1/mm, in the mesh's order, as the next two
+    const double *volumes_;    // (tets,) mm3
+    const std::int64_t *region_; // (tets,)
+    const double *lame;          // (regions, 2) lambda, mu in MPa
     std::int32_t regions;
+
+    // Of tet i of the walk:
+    const double *gradients(std::int64_t i) const { return gradients_ + 12 * order[i]; }
+    double volume(std::int64_t i) const { return volumes_[order[i]]; }
+    std::int32_t region(std::int64_t i) const {
+        return static_cast<std::int32_t>(region_[order[i]]);
+    }
+    double lambda(std::int64_t i) const { return lame[2 * region(i)]; }
+    double mu(std::int64_t i) const { return lame[2 * region(i) + 1]; }
 };
 
 /// K u without a matrix, in float64 or float32, on one or several right-hand sides.

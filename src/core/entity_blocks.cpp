@@ -77,15 +77,15 @@ void sum_tets(const ElasticTets &tets, const Entities &entities, std::size_t e, 
     std::fill_n(q, 9 * corners * corners, 0.0);
     const double square = tets.degree * tets.degree;
     for (auto t = size(entities.start[e]); t < size(entities.start[e + 1]); ++t) {
-        const std::size_t tet = size(entities.around[t]);
-        const double scale = square * tets.volumes[tet];
-        const double lambda = scale * tets.lame[2 * tets.region[tet]];
-        const double mu = scale * tets.lame[2 * tets.region[tet] + 1];
+        const std::int64_t tet = entities.around[t];
+        const double scale = square * tets.volume(tet);
+        const double lambda = scale * tets.lambda(tet);
+        const double mu = scale * tets.mu(tet);
         const double *g[4];
         int n = 0;
         for (int v = 0; v < 4; ++v)
             if (entity_vertices[entities.local[t]] >> v & 1)
-                g[n++] = tets.gradients + 12 * tet + 3 * size(v);
+                g[n++] = tets.gradients(tet) + 3 * v;
         for (int i = 0; i < corners; ++i)
             for (int j = 0; j < corners; ++j) {
                 double *to = q + 9 * (i * corners + j);

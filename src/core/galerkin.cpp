@@ -119,9 +119,8 @@ private:
             const float *block = p_.value.data() + std::size_t{columns_.at[e]} * n * motions;
             const Eight *from = row(i);
             for (auto at = size_of(ap_.start[i]); at < size_of(ap_.start[i + 1]); ++at, from += n)
-                if (ap_.column[at] >= of(g))
-                    add_pair<n>(block, from,
-                                sums.data() + place[size_of(ap_.column[at])] * motions);
+                if (const auto other = ap_.column[at]; other >= of(g))
+                    add_pair<n>(block, from, sums.data() + place[size_of(other)] * motions);
         }
         next_[g] = static_cast<std::int64_t>(e);
         float *to = coarse_.value.data() + size_of(own) * motions * motions;

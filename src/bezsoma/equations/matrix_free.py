@@ -51,13 +51,14 @@ class MatrixFree:
     @cached_property
     def kernel(self) -> _core.MatrixFree:
         """The core's side of it."""
-        mesh, order = self.net.mesh, self.net.morton
+        net, mesh = self.net, self.net.mesh
         return _core.MatrixFree(
-            self.net.degree,
+            net.degree,
             self.runs,
-            np.ascontiguousarray(mesh.gradients[order]),
-            np.ascontiguousarray(mesh.volumes[order]),
-            mesh.region[order].astype(np.int32),
+            net.morton,
+            mesh.gradients,
+            mesh.volumes,
+            mesh.region,
             np.ascontiguousarray(self.lame),
             self.threads,
             self.instructions,

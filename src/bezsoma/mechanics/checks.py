@@ -62,4 +62,9 @@ def names(given: tuple[Any, ...], of: str) -> tuple[str, ...]:
                 f"{of} was given {each!r} where the name of a place stands; write names one after "
                 f"the other, as in {of}('skull', 'rami', ...), and everything else by keyword"
             )
+        if given.count(each) > 1:
+            raise InputError(
+                f"{of} names {each!r} {given.count(each)} times; a load would act as often, so name "
+                "each place once"
+            )
     return given

@@ -92,9 +92,9 @@ Join = Precedence | Graded | Gap
 
 def two(first: str, second: str, of: str) -> None:
     """Check that a join names two different places."""
-    names((first, second), of)
     if first == second:
         raise InputError(f"{of} joins {first!r} with itself; it needs two places that meet")
+    names((first, second), of)
 
 
 def positive(value: float, what: str) -> float:

@@ -218,7 +218,8 @@ def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _
         raise NotConverged(
             f"the direct solver is left with {history[-1]:.3g} of the residual at zero free "
             f"displacement, and rtol = {rtol:g} was asked for: rounding stops it there. Take a "
-            "larger rtol, or look for tets that are almost flat and nu very close to 1/2",
+            "larger rtol, or look for tets that are almost flat, nu very close to 1/2 and materials "
+            "of very unequal stiffness",
             history,
         )
     return _Found(x, "direct (SuperLU, scaled and refined)", history)
