@@ -51,18 +51,21 @@ def solve_cholesky(
     z: Floats,
 ) -> None: ...
 
-class MatrixFree:
+class Walk:
     def __init__(
         self,
         degree: int,
         first: Int32s,
         order: Ints,
-        gradients: Floats,
-        volumes: Floats,
+        points: Floats,
+        corners: Ints,
         region: Ints,
         lame: Floats,
-        threads: int = 0,
-        instructions: str = "",
+    ) -> None: ...
+
+class MatrixFree:
+    def __init__(
+        self, walk: Walk, threads: int = 0, instructions: str = "", single: bool = False
     ) -> None: ...
     def apply(self, x: Floats, y: Floats) -> None: ...
     def apply_single(self, x: Singles, y: Singles) -> None: ...
@@ -74,7 +77,13 @@ class MatrixFree:
 
 class Multigrid:
     def __init__(
-        self, k: MatrixFree, corners: Int32s, points: Floats, held: Bools, held_vertices: Bools
+        self,
+        k: MatrixFree,
+        walk: Walk,
+        corners: Int32s,
+        points: Floats,
+        held: Bools,
+        held_vertices: Bools,
     ) -> None: ...
     def solve(
         self,

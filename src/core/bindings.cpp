@@ -6,6 +6,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -147,11 +148,18 @@ void solve_cholesky(In<std::int64_t, -1> start, In<std::int32_t, -1> column,
 
 /// Tets in the order of the walk that numbered their controls.
 struct Walk {
+    Walk(int n, In<std::int32_t, -1, -1> first_of_entity, In<std::int64_t, -1> order_of_walk,
+         In<double, -1, 3> where, In<std::int64_t, -1, 4> corners_of_tet,
+         In<std::int64_t, -1> region_of_tet, In<double, -1, 2> lambda_and_mu)
+        : degree(n), first(std::move(first_of_entity)), order(std::move(order_of_walk)),
+          points(std::move(where)), corners(std::move(corners_of_tet)),
+          region(std::move(region_of_tet)), lame(std::move(lambda_and_mu)) {}
+
     int degree;
     In<std::int32_t, -1, -1> first;
     In<std::int64_t, -1> order;
-    In<double, -1, 4, 3> gradients;
-    In<double, -1> volumes;
+    In<double, -1, 3> points;
+    In<std::int64_t, -1, 4> corners;
     In<std::int64_t, -1> region;
     In<double, -1, 2> lame;
 
@@ -159,20 +167,27 @@ struct Walk {
         require(degree >= 1 && degree <= 10, "degree must be 1 to 10");
         require(first.shape(1) == static_cast<std::size_t>(bezsoma::entities_of_tet(degree)),
                 "first must have a column for each entity that holds controls");
-        const std::size_t tets = volumes.shape(0);
+        const std::size_t tets = corners.shape(0);
         require(tets > 0 && first.shape(0) == tets && order.shape(0) == tets &&
-                    gradients.shape(0) == tets && region.shape(0) == tets,
-                "first, order, gradients, volumes and region must have one row a tet");
-        const auto regions = static_cast<std::int32_t>(lame.shape(0));
-        for (std::size_t t = 0; t < tets; ++t)
-            require(region.data()[t] >= 0 && region.data()[t] < regions && order.data()[t] >= 0 &&
-                        order.data()[t] < static_cast<std::int64_t>(tets),
-                    "region must number the rows of lame, and order the tets");
-        return {degree,           static_cast<std::int64_t>(tets),
-                first.data(),     order.data(),
-                gradients.data(), volumes.data(),
-                region.data(),    lame.data(),
-                regions};
+                    region.shape(0) == tets,
+                "first, order, corners and region must have one row a tet");
+        const auto within = [](const auto &numbers, std::size_t count) {
+            return std::all_of(numbers.data(), numbers.data() + numbers.size(), [=](auto i) {
+                return i >= 0 && static_cast<std::size_t>(i) < count;
+            });
+        };
+        require(within(order, tets) && within(corners, points.shape(0)) &&
+                    within(region, lame.shape(0)),
+                "order, corners and region must number tets, points and rows of lame");
+        return {degree,
+                static_cast<std::int64_t>(tets),
+                first.data(),
+                order.data(),
+                points.data(),
+                corners.data(),
+                region.data(),
+                lame.data(),
+                static_cast<std::int32_t>(lame.shape(0))};
     }
 };
 
@@ -183,41 +198,45 @@ void listen_to_signals() {
         throw nb::python_error();
 }
 
-/// K of one body without a matrix, its threads, and the kernels of one instruction set.
+/// K of one body without a matrix in one precision, its threads, and the kernels of one
+/// instruction set. What it was made from is not kept.
 class MatrixFree {
 public:
-    MatrixFree(Walk walk, std::size_t threads, const std::string &instructions)
-        : walk_(std::move(walk)), team_(threads),
+    MatrixFree(const Walk &walk, std::size_t threads, const std::string &instructions, bool single)
+        : team_(threads),
           kernels_(instructions.empty() ? &bezsoma::best_kernels()
                                         : bezsoma::kernels_named(instructions.c_str())) {
         require(kernels_ != nullptr, "this processor or build lacks that instruction set");
-        const bezsoma::ElasticTets tets = walk_.tets();
+        const bezsoma::ElasticTets tets = walk.tets();
         team_.watch(listen_to_signals);
         nb::gil_scoped_release released;
-        double_ = std::make_unique<bezsoma::ElasticOperator<double>>(tets, *kernels_, team_);
+        if (single)
+            single_ = std::make_unique<bezsoma::ElasticOperator<float>>(tets, *kernels_, team_);
+        else
+            double_ = std::make_unique<bezsoma::ElasticOperator<double>>(tets, *kernels_, team_);
     }
 
     void apply(In<double, -1, 3, -1> x, nb::ndarray<double, nb::shape<-1, 3, -1>, nb::c_contig> y) {
-        apply_to(*double_, x, y);
+        apply_to(k(), x, y);
     }
 
     void apply_single(In<float, -1, 3, -1> x,
                       nb::ndarray<float, nb::shape<-1, 3, -1>, nb::c_contig> y) {
-        if (!single_)
-            single_ =
-                std::make_unique<bezsoma::ElasticOperator<float>>(walk_.tets(), *kernels_, team_);
+        require(single_ != nullptr, "this operator was made for float64");
         apply_to(*single_, x, y);
     }
 
     double work(In<double, -1, 3> x) {
-        require(static_cast<std::int64_t>(x.shape(0)) == double_->controls(),
+        require(static_cast<std::int64_t>(x.shape(0)) == k().controls(),
                 "x must have one row a control");
         nb::gil_scoped_release released;
-        return double_->work(x.data());
+        return k().work(x.data());
     }
 
-    const Walk &walk() const { return walk_; }
-    bezsoma::ElasticOperator<double> &k() { return *double_; }
+    bezsoma::ElasticOperator<double> &k() {
+        require(double_ != nullptr, "this operator was made for float32");
+        return *double_;
+    }
     bezsoma::Team &team() { return team_; }
     const bezsoma::Kernels &kernels() const { return *kernels_; }
 
@@ -231,7 +250,6 @@ private:
         k.apply(x.data(), y.data(), sides);
     }
 
-    Walk walk_;
     bezsoma::Team team_;
     const bezsoma::Kernels *kernels_;
     std::unique_ptr<bezsoma::ElasticOperator<double>> double_;
@@ -241,12 +259,12 @@ private:
 /// The preconditioner of a body with its supports, and the iteration that it serves.
 class Multigrid {
 public:
-    Multigrid(MatrixFree &k, In<std::int32_t, -1, 4> corners, In<double, -1, 3> points,
-              In<bool, -1, 3> held, In<bool, -1, 3> held_vertices)
+    Multigrid(MatrixFree &k, const Walk &walk, In<std::int32_t, -1, 4> corners,
+              In<double, -1, 3> points, In<bool, -1, 3> held, In<bool, -1, 3> held_vertices)
         : k_(k) {
-        const bezsoma::ElasticTets tets = k.walk().tets();
+        const bezsoma::ElasticTets tets = walk.tets();
         const auto vertices = static_cast<std::int64_t>(points.shape(0));
-        require(corners.shape(0) == k.walk().volumes.shape(0) &&
+        require(corners.shape(0) == walk.corners.shape(0) &&
                     held.shape(0) == static_cast<std::size_t>(k.k().controls()) &&
                     held_vertices.shape(0) == points.shape(0),
                 "corners, held and held_vertices must fit the tets, controls and vertices");
@@ -321,27 +339,23 @@ NB_MODULE(_core, m) {
           "held"_a, "shift"_a, "least"_a);
     m.def("solve_cholesky", &solve_cholesky, "starts"_a, "columns"_a, "below"_a, "inverse"_a, "r"_a,
           "z"_a);
+    nb::class_<Walk>(m, "Walk").def(
+        nb::init<int, In<std::int32_t, -1, -1>, In<std::int64_t, -1>, In<double, -1, 3>,
+                 In<std::int64_t, -1, 4>, In<std::int64_t, -1>, In<double, -1, 2>>(),
+        "degree"_a, "first"_a, "order"_a, "points"_a, "corners"_a, "region"_a, "lame"_a);
     nb::class_<MatrixFree>(m, "MatrixFree")
-        .def(
-            "__init__",
-            [](MatrixFree *self, int degree, In<std::int32_t, -1, -1> first,
-               In<std::int64_t, -1> order, In<double, -1, 4, 3> gradients, In<double, -1> volumes,
-               In<std::int64_t, -1> region, In<double, -1, 2> lame, std::size_t threads,
-               const std::string &instructions) {
-                new (self) MatrixFree({degree, first, order, gradients, volumes, region, lame},
-                                      threads, instructions);
-            },
-            "degree"_a, "first"_a, "order"_a, "gradients"_a, "volumes"_a, "region"_a, "lame"_a,
-            "threads"_a = 0, "instructions"_a = "")
+        .def(nb::init<const Walk &, std::size_t, const std::string &, bool>(), "walk"_a,
+             "threads"_a = 0, "instructions"_a = "", "single"_a = false)
         .def("apply", &MatrixFree::apply, "x"_a, "y"_a)
         .def("work", &MatrixFree::work, "x"_a)
         .def("apply_single", &MatrixFree::apply_single, "x"_a, "y"_a)
         .def_prop_ro("instructions", [](const MatrixFree &k) { return k.kernels().name; })
         .def_prop_ro("threads", [](MatrixFree &k) { return k.team().size(); });
     nb::class_<Multigrid>(m, "Multigrid")
-        .def(nb::init<MatrixFree &, In<std::int32_t, -1, 4>, In<double, -1, 3>, In<bool, -1, 3>,
-                      In<bool, -1, 3>>(),
-             "k"_a, "corners"_a, "points"_a, "held"_a, "held_vertices"_a, nb::keep_alive<1, 2>())
+        .def(nb::init<MatrixFree &, const Walk &, In<std::int32_t, -1, 4>, In<double, -1, 3>,
+                      In<bool, -1, 3>, In<bool, -1, 3>>(),
+             "k"_a, "walk"_a, "corners"_a, "points"_a, "held"_a, "held_vertices"_a,
+             nb::keep_alive<1, 2>())
         .def("solve", &Multigrid::solve, "f"_a, "x"_a, "reference"_a, "rtol"_a, "most"_a,
              "report"_a)
         .def("apply", &Multigrid::apply, "r"_a, "z"_a)

@@ -22,6 +22,29 @@ std::int64_t expected_controls(const ElasticTets &tets) {
 
 } // namespace
 
+TetShape ElasticTets::shape(std::int64_t i) const {
+    const std::int64_t *at = corners + 4 * order[i];
+    double edge[3][3];
+    for (int e = 0; e < 3; ++e)
+        for (int k = 0; k < 3; ++k)
+            edge[e][k] = points[3 * at[e + 1] + k] - points[3 * at[0] + k];
+    TetShape tet{};
+    double (&g)[4][3] = tet.gradients;
+    for (int e = 0; e < 3; ++e) { // grad L_1 = (p2 - p0) x (p3 - p0) / det and cyclic
+        const double *b = edge[(e + 1) % 3], *c = edge[(e + 2) % 3];
+        for (int k = 0; k < 3; ++k)
+            g[e + 1][k] = b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3];
+    }
+    const double det = edge[0][0] * g[1][0] + edge[0][1] * g[1][1] + edge[0][2] * g[1][2];
+    for (int k = 0; k < 3; ++k) {
+        for (int e = 1; e < 4; ++e)
+            g[e][k] /= det;
+        g[0][k] = -(g[1][k] + g[2][k] + g[3][k]);
+    }
+    tet.volume = std::abs(det) / 6;
+    return tet;
+}
+
 template <class T>
 ElasticOperator<T>::ElasticOperator(const ElasticTets &tets, const Kernels &kernels, Team &team)
     : team_(team), chunks_(bezsoma::chunks(tets.degree, tets.first, tets.tets,
@@ -55,10 +78,11 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
             for (std::int64_t e = 0; e < per_tet; ++e)
                 first_[size((batch * per_tet + e) * lanes_ + lane)] =
                     chunks_.local[size(tet * per_tet + e)];
-            const double root = std::sqrt(tets.volume(tet));
+            const TetShape shape = tets.shape(tet);
+            const double root = std::sqrt(shape.volume);
             for (std::int64_t k = 0; k < 9; ++k)
                 geometry_[size((batch * 9 + k) * lanes_ + lane)] =
-                    static_cast<T>(root * tets.gradients(tet)[3 + k]);
+                    static_cast<T>(root * shape.gradients[1 + k / 3][k % 3]);
             region_[size(batch * lanes_ + lane)] = tets.region(tet);
         }
     });

@@ -10,24 +10,30 @@
 
 namespace bezsoma {
 
+/// grad L_i and the volume of a tet.
+struct TetShape {
+    double gradients[4][3]; // 1/mm
+    double volume;          // mm3
+};
+
 /// What an operator is made from: the tets of a mesh, and the walk over them that numbered the
-/// controls. Tet i of the walk is tet order[i] of the mesh.
+/// controls. Tet i of the walk is tet order[i] of the mesh. Shapes are formed where they are
+/// needed: kept, they would be the largest part of a problem of low degree.
 struct ElasticTets {
     int degree;
     std::int64_t tets;
-    const std::int32_t *first; // (tets, entities) first control of each entity, in the walk's order
-    const std::int64_t *order; // (tets,)
-    const double *gradients_;  // (tets, 4, 3) grad L_i, 1/mm, in the mesh's order, as the next two
-    const double *volumes_;    // (tets,) mm3
-    const std::int64_t *region_; // (tets,)
-    const double *lame;          // (regions, 2) lambda, mu in MPa
+    const std::int32_t *first;         // (tets, entities) first control of each entity, by the walk
+    const std::int64_t *order;         // (tets,)
+    const double *points;              // (points, 3) mm
+    const std::int64_t *corners;       // (tets, 4) of the mesh, ascending
+    const std::int64_t *region_of_tet; // (tets,)
+    const double *lame;                // (regions, 2) lambda, mu in MPa
     std::int32_t regions;
 
     // Of tet i of the walk:
-    const double *gradients(std::int64_t i) const { return gradients_ + 12 * order[i]; }
-    double volume(std::int64_t i) const { return volumes_[order[i]]; }
+    TetShape shape(std::int64_t i) const;
     std::int32_t region(std::int64_t i) const {
-        return static_cast<std::int32_t>(region_[order[i]]);
+        return static_cast<std::int32_t>(region_of_tet[order[i]]);
     }
     double lambda(std::int64_t i) const { return lame[2 * region(i)]; }
     double mu(std::int64_t i) const { return lame[2 * region(i) + 1]; }

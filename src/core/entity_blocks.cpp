@@ -78,14 +78,15 @@ void sum_tets(const ElasticTets &tets, const Entities &entities, std::size_t e, 
     const double square = tets.degree * tets.degree;
     for (auto t = size(entities.start[e]); t < size(entities.start[e + 1]); ++t) {
         const std::int64_t tet = entities.around[t];
-        const double scale = square * tets.volume(tet);
+        const TetShape shape = tets.shape(tet);
+        const double scale = square * shape.volume;
         const double lambda = scale * tets.lambda(tet);
         const double mu = scale * tets.mu(tet);
         const double *g[4];
         int n = 0;
         for (int v = 0; v < 4; ++v)
             if (entity_vertices[entities.local[t]] >> v & 1)
-                g[n++] = tets.gradients(tet) + 3 * v;
+                g[n++] = shape.gradients[v];
         for (int i = 0; i < corners; ++i)
             for (int j = 0; j < corners; ++j) {
                 double *to = q + 9 * (i * corners + j);

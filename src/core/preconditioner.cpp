@@ -2,7 +2,9 @@
 #include "preconditioner.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include "entity_blocks.hpp"
 
@@ -18,7 +20,7 @@ Preconditioner::Preconditioner(const ElasticTets &tets, const std::int32_t *corn
                                std::int64_t vertices, const std::uint8_t *fixed,
                                const Chunks &chunks, const Kernels &kernels, Team &team)
     : degree_(tets.degree), lanes_(kernels.lanes64), kernel_(kernels.blocks[tets.degree - 1]),
-      team_(team), rows_{}, dots_(chunks.parts.size()) {
+      team_(team), rows_{}, moments_from_{}, dots_(chunks.parts.size()) {
     const Entities found = entities(tets.degree, tets.first, corners, tets.tets);
     for (const Chunk &chunk : chunks.parts)
         range_.push_back(std::ranges::lower_bound(found.all, chunk.control, {}, &Entity::control) -
@@ -51,6 +53,7 @@ void Preconditioner::arrange(const Entities &entities) {
 void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
                           const std::uint8_t *fixed) {
     const EntityBlocks blocks(tets, entities);
+    std::size_t moments = 0;
     for (std::size_t dim = 0; dim < 4; ++dim) {
         const std::size_t rows = blocks.rows(static_cast<int>(dim)),
                           triangle = rows * (rows + 1) / 2;
@@ -60,7 +63,8 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
         vertices_[dim].resize(all * (dim + 1));
         value_[dim].resize(all * triangle);
         z_[dim].resize(all * rows);
-        moments_[dim].resize(all * 3 * (dim + 1));
+        moments_from_[dim] = moments;
+        moments += all * 3 * (dim + 1);
         team_.run(batches, [&](std::size_t batch, std::size_t) {
             std::vector<double> scratch;
             std::vector<float> packed(triangle);
@@ -78,6 +82,9 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
             }
         });
     }
+    if (moments > std::numeric_limits<std::uint32_t>::max())
+        throw std::length_error("more than 2^32 moments of entities do not fit 32-bit places");
+    moments_.resize(moments);
 }
 
 /// Where the moments of each vertex stand, in a fixed order.
@@ -90,14 +97,16 @@ void Preconditioner::list_moments(std::int64_t vertices) {
                     const std::size_t lanes = size(lanes_), batch = i / lanes, lane = i % lanes;
                     const std::size_t corner = batch * (dim + 1) + v;
                     visit(size(vertices_[dim][corner * lanes + lane]),
-                          moments_[dim].data() + corner * 3 * lanes + lane);
+                          moments_from_[dim] + corner * 3 * lanes + lane);
                 }
     };
-    each([&](std::size_t vertex, const float *) { ++moment_start_[vertex + 1]; });
+    each([&](std::size_t vertex, std::size_t) { ++moment_start_[vertex + 1]; });
     std::partial_sum(moment_start_.begin(), moment_start_.end(), moment_start_.begin());
     moment_.resize(size(moment_start_.back()));
     std::vector<std::int64_t> at(moment_start_.begin(), moment_start_.end() - 1);
-    each([&](std::size_t vertex, const float *where) { moment_[size(at[vertex]++)] = where; });
+    each([&](std::size_t vertex, std::size_t where) {
+        moment_[size(at[vertex]++)] = static_cast<std::uint32_t>(where);
+    });
     for (auto &numbers : number_)
         std::vector<std::int32_t>().swap(numbers);
 }
@@ -111,7 +120,7 @@ BlockBatches Preconditioner::batches(std::size_t part, std::size_t dim) {
             vertices_[dim].data() + lane * corners,
             value_[dim].data() + lane * (rows * (rows + 1) / 2),
             z_[dim].data() + lane * rows,
-            moments_[dim].data() + lane * 3 * corners};
+            moments_.data() + moments_from_[dim] + lane * 3 * corners};
 }
 
 double Preconditioner::forward(const double *r, double norm, std::vector<float> &coarse) {
@@ -129,7 +138,7 @@ double Preconditioner::forward(const double *r, double norm, std::vector<float> 
             float sum[3] = {};
             for (auto m = size(moment_start_[v]); m < size(moment_start_[v + 1]); ++m)
                 for (int k = 0; k < 3; ++k)
-                    sum[k] += moment_[m][k * lanes_];
+                    sum[k] += moments_[moment_[m] + size(k * lanes_)];
             std::copy_n(sum, 3, coarse.data() + 3 * v);
         }
     });
@@ -145,10 +154,10 @@ void Preconditioner::back(const std::vector<float> &coarse, double norm, double 
 }
 
 std::size_t Preconditioner::bytes() const {
-    std::size_t sum = moment_.size() * sizeof(float *) + moment_start_.size() * 8;
+    std::size_t sum = 4 * (moment_.size() + moments_.size()) + 8 * moment_start_.size();
     for (std::size_t dim = 0; dim < 4; ++dim)
-        sum += 4 * (control_[dim].size() + vertices_[dim].size() + value_[dim].size() +
-                    z_[dim].size() + moments_[dim].size());
+        sum += 4 *
+               (control_[dim].size() + vertices_[dim].size() + value_[dim].size() + z_[dim].size());
     return sum;
 }
 

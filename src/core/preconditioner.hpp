@@ -56,9 +56,11 @@ private:
     std::array<std::int64_t, 4> rows_;
     std::array<std::vector<std::int32_t>, 4> number_; // of the entity, -1 for a lane without one
     std::array<std::vector<std::int32_t>, 4> control_, vertices_;
-    std::array<std::vector<float>, 4> value_, z_, moments_;
+    std::array<std::vector<float>, 4> value_, z_;
+    std::array<std::size_t, 4> moments_from_; // where those of a dimension begin
+    std::vector<float> moments_;
     std::vector<std::int64_t> moment_start_; // (vertices + 1,)
-    std::vector<const float *> moment_;      // where a vertex' moments stand
+    std::vector<std::uint32_t> moment_;      // where a vertex' moments stand
     std::vector<double> dots_;               // a chunk each
 };
 

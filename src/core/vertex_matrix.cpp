@@ -44,11 +44,11 @@ struct Rows {
     void sum(std::size_t v, const std::vector<std::int32_t> &place, double *row) const {
         for (auto i = size_of(around.start[v]); i < size_of(around.start[v + 1]); ++i) {
             const std::uint32_t tet = around.corner[i] / 4;
-            const double lambda = tets.volume(tet) * tets.lambda(tet),
-                         mu = tets.volume(tet) * tets.mu(tet);
+            const TetShape shape = tets.shape(tet);
+            const double lambda = shape.volume * tets.lambda(tet);
+            const double mu = shape.volume * tets.mu(tet);
             for (std::size_t j = 0; j < 4; ++j)
-                add_coupling(tets.gradients(tet) + 3 * (around.corner[i] % 4),
-                             tets.gradients(tet) + 3 * j, lambda, mu,
+                add_coupling(shape.gradients[around.corner[i] % 4], shape.gradients[j], lambda, mu,
                              row + 9 * place[size_of(corners[4 * std::size_t{tet} + j])]);
         }
     }

@@ -42,7 +42,8 @@ class Equations:
         K u are the internal forces, int B^T tau (paper, eqs. 8 and 45): for a linear law, and for
         no other, they are the stiffness matrix times the controls.
         """
-        return np.asarray(self.forces - self.stiffness @ u)
+        product = self.stiffness @ u
+        return np.subtract(self.forces, product, out=product)
 
     def free_product(self, u: Floats) -> Floats:
         """K u (c, 3) N with zeros where the displacement is prescribed."""

@@ -13,8 +13,6 @@ from bezsoma import _core
 from bezsoma.arrays import Floats
 from bezsoma.mesh.control_net import ControlNet
 
-Int32s = npt.NDArray[np.int32]
-
 
 @dataclass(frozen=True, eq=False)
 class MatrixFree:
@@ -51,27 +49,28 @@ class MatrixFree:
     @cached_property
     def kernel(self) -> _core.MatrixFree:
         """The core's side of it."""
-        net, mesh = self.net, self.net.mesh
-        return _core.MatrixFree(
-            net.degree,
-            self.runs,
-            net.morton,
-            mesh.gradients,
-            mesh.volumes,
-            mesh.region,
-            np.ascontiguousarray(self.lame),
-            self.threads,
-            self.instructions,
-        )
+        return _core.MatrixFree(self.walk(), self.threads, self.instructions)
 
     @cached_property
-    def runs(self) -> Int32s:
-        """The first control of each entity of each tet (t, 4 to 15), tets in Morton order."""
-        mesh, starts = self.net.mesh, self.net.starts
-        everyone = np.arange(len(mesh.tets))[:, None]
-        parts = (mesh.tets, mesh.edges_of_tet, mesh.faces_of_tet, everyone)
-        columns = [start[part] for start, part in zip(starts, parts, strict=False)]
-        return np.concatenate(columns, axis=1)[self.net.morton].astype(np.int32)
+    def _single(self) -> _core.MatrixFree:
+        return _core.MatrixFree(self.walk(), self.threads, self.instructions, single=True)
+
+    def walk(self) -> _core.Walk:
+        """The tets in the order in which they numbered the controls, as the core takes them."""
+        net, mesh = self.net, self.net.mesh
+        first = [
+            net.starts[dim][entities[net.morton]].astype(np.int32)
+            for dim, entities in enumerate(net.entities_of_tet())
+        ]
+        return _core.Walk(
+            net.degree,
+            np.concatenate(first, axis=1),
+            net.morton,
+            mesh.points,
+            mesh.tets,
+            mesh.region,
+            np.ascontiguousarray(self.lame),
+        )
 
     def __matmul__(self, x: Floats) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N."""
@@ -84,7 +83,7 @@ class MatrixFree:
         """K x in float32 throughout, (c, 3) or (c, 3, s)."""
         sides = np.ascontiguousarray(x, dtype=np.float32).reshape(len(x), 3, -1)
         y = np.empty_like(sides)
-        self.kernel.apply_single(sides, y)
+        self._single.apply_single(sides, y)
         return y.reshape(x.shape)
 
     def energy(self, x: Floats) -> float:

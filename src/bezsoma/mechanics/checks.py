@@ -64,7 +64,7 @@ def names(given: tuple[Any, ...], of: str) -> tuple[str, ...]:
             )
         if given.count(each) > 1:
             raise InputError(
-                f"{of} names {each!r} {given.count(each)} times; a load would act as often, so name "
-                "each place once"
+                f"{of} names {each!r} {given.count(each)} times; a load would act as often, so "
+                "name each place once"
             )
     return given

@@ -93,14 +93,21 @@ class ControlNet:
         starts[touched] = np.cumsum(sizes) - sizes
         return tuple(frozen(part) for part in np.split(starts, bases[1:-1]))
 
+    def entities_of_tet(self) -> list[Ints]:
+        """The numbers of the vertices, edges, faces and interior of each tet, (t, 4) and so on.
+
+        Only the kinds that hold controls inside, as in `starts`.
+        """
+        return [self._parts(3, dim) for dim in self._dims(3)]
+
     @cached_property
     def of_tet(self) -> Ints:
         """The controls of each tet (t, m), in the order of the tet's multi-indices."""
         return frozen(self.closure(3))
 
-    @cached_property
+    @property
     def points(self) -> Floats:
-        """The domain point of each control (c, 3) in mm."""
+        """The domain point of each control (c, 3) in mm; formed anew at each call, not kept."""
         points = np.empty((self.count, 3))
         for dim, numbers, own in self._runs():
             rows = bernstein.domain_points(self.degree, dim)[inside(self.degree, dim)]
@@ -157,9 +164,12 @@ class ControlNet:
         return np.unique(self.closure(top, entities[top]))
 
     def entities_of_place(self, name: str) -> Mapping[int, Ints]:
-        """Dimension -> the numbers, ascending, of the vertices, edges and faces of a place."""
+        """Dimension -> the numbers, ascending, of the vertices, edges and faces of a place.
+
+        At degree 1 the vertices alone: no other control is there.
+        """
         kind, vertices = self.mesh.place_kind(name), self.mesh.vertices_of(name)
-        if kind == "vertex":
+        if kind == "vertex" or self.degree == 1:
             return {0: vertices}
         if kind == "edge":
             return {0: vertices, 1: np.unique(self.edge_numbers(self.mesh.edges[name]))}

@@ -24,6 +24,8 @@ __all__ = ["BrokenField", "Field", "SurfaceField"]
 class Field:
     """A continuous field: its controls (c,) or (c, ...) on a net.
 
+    On a tet it is sum_a b_a B_a, the H u hat of the paper (eqs. 1, 27, 28 and 29).
+
     A value may be a number, a vector (3,) or of any shape; `...` below stands for it.
 
     >>> from bezsoma.mesh.solids import block

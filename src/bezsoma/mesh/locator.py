@@ -59,7 +59,10 @@ class TetBins:
         return owner
 
     def bary(self, points: Floats, tets: Ints) -> Floats:
-        """The barycentric coordinates (p, 4) of each point (p, 3) in its own tet (p,)."""
+        """The barycentric coordinates (p, 4) of each point (p, 3) in its own tet (p,).
+
+        Point = sum_i L_i corner_i, with L_1 + .. + L_4 = 1 (paper, eqs. 54 and 55).
+        """
         offset = points - self.points[self.tets[tets, 0]]
         bary: Floats = np.einsum("pid,pd->pi", self.gradients[tets], offset)
         bary[:, 0] += 1.0

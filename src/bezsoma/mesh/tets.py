@@ -20,7 +20,6 @@ from bezsoma.mesh import checks, places
 from bezsoma.mesh.topology import (
     EDGES,
     FACES,
-    Simplices,
     cross,
     determinants,
     neighbours,
@@ -94,7 +93,9 @@ class TetMesh:
             dropped=int((~used).sum()),
         )
         kept = np.flatnonzero(used)
-        checks.topology(self._faces, self.tets_of_face, self.tets, signs, kept)
+        faces = simplices(self.tets, FACES, len(self.points))
+        self._hold(_faces=(faces.rows, faces.of_tet))
+        checks.topology(faces, self.tets_of_face, self.tets, signs, kept)
         checks.one_namespace(surface=surfaces, edge=edges, vertex=vertices)
         self._hold_places(surfaces, edges, vertices, used, renumbered)
 
@@ -151,8 +152,8 @@ class TetMesh:
         """The gradients (t, 4, 3) of the barycentric coordinates L_i in 1/mm.
 
         grad L_1 = (p2 - p0) x (p3 - p0) / det and cyclic, grad L_0 = -(the sum of the others),
-        so that the four add up to nothing and a translation strains nothing. They are the dual
-        basis of the edges:
+        so that the four add up to nothing and a translation strains nothing. They do the
+        work of the inverse Jacobian (paper, eq. 56) and are the dual basis of the edges:
 
         >>> mesh = TetMesh([[0, 0, 0], [2, 0, 0], [1, 3, 0], [1, 1, 4.0]], [[0, 1, 2, 3]])
         >>> edges = mesh.points[1:] - mesh.points[0]
@@ -194,7 +195,7 @@ class TetMesh:
         A facet between two tets has no outward side and is refused.
         """
         faces = self._face_numbers(facets)
-        inner = np.flatnonzero(self._faces.counts[faces] > 1)
+        inner = np.flatnonzero(self.tets_of_face[faces, 1] >= 0)
         if len(inner):
             raise MeshError(
                 f"facet {checks.listed(inner)} lies between two tets and has no outward side; "
@@ -229,43 +230,47 @@ class TetMesh:
 
     # Topology -------------------------------------------------------------------------------
 
-    @cached_property
-    def _edges(self) -> Simplices:
-        return simplices(self.tets, EDGES, len(self.points))
+    # Who shares a simplex is asked while the mesh is checked, and not kept: memory counts.
 
     @cached_property
-    def _faces(self) -> Simplices:
-        return simplices(self.tets, FACES, len(self.points))
+    def _edges(self) -> tuple[Ints, Ints]:
+        found = simplices(self.tets, EDGES, len(self.points))
+        return found.rows, found.of_tet
+
+    @cached_property
+    def _faces(self) -> tuple[Ints, Ints]:
+        found = simplices(self.tets, FACES, len(self.points))
+        return found.rows, found.of_tet
 
     @property
     def all_edges(self) -> Ints:
         """Every edge (e, 2) once, rows ascending, in lexicographic order."""
-        return self._edges.rows
+        return self._edges[0]
 
     @property
     def all_faces(self) -> Ints:
         """Every face (f, 3) once, rows ascending, in lexicographic order."""
-        return self._faces.rows
+        return self._faces[0]
 
     @property
     def edges_of_tet(self) -> Ints:
         """The edges (t, 6) of each tet, numbers into `all_edges`: 01, 02, 03, 12, 13, 23."""
-        return self._edges.of_tet
+        return self._edges[1]
 
     @property
     def faces_of_tet(self) -> Ints:
         """The faces (t, 4) of each tet, numbers into `all_faces`: face i is opposite vertex i."""
-        return self._faces.of_tet
+        return self._faces[1]
 
     @cached_property
     def tets_of_face(self) -> Ints:
         """The tets (f, 2) at each face, the lower number first, -1 where there is no second."""
-        return neighbours(self._faces)
+        return neighbours(self.faces_of_tet, len(self.all_faces))
 
     @cached_property
     def boundary(self) -> Ints:
         """The facets (b, 3) that only one tet has, in lexicographic order."""
-        return frozen(self.all_faces[self._faces.counts == 1])
+        return frozen(self.all_faces[self.tets_of_face[:, 1] < 0])
 
     def components(self) -> Ints:
         """The part (t,) that each tet belongs to, 0, 1, ...; parts hang together by faces.

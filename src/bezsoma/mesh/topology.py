@@ -84,17 +84,19 @@ def simplices(tets: Ints, local: tuple[tuple[int, ...], ...], count: int) -> Sim
     )
 
 
-def neighbours(faces: Simplices) -> Ints:
-    """The two tets at each face (f, 2), the lower number first; -1 where there is none.
+def neighbours(faces_of_tet: Ints, faces: int) -> Ints:
+    """The two tets at each of the faces (faces, 2), the lower number first; -1 where none is.
 
-    >>> neighbours(simplices(np.array([[0, 1, 2, 3], [1, 2, 3, 4]]), FACES, 5)).tolist()
+    >>> found = simplices(np.array([[0, 1, 2, 3], [1, 2, 3, 4]]), FACES, 5)
+    >>> neighbours(found.of_tet, len(found.rows)).tolist()
     [[0, -1], [0, -1], [0, -1], [0, 1], [1, -1], [1, -1], [1, -1]]
     """
-    starts = np.cumsum(faces.counts) - faces.counts
-    pair = np.full((len(faces.rows), 2), -1, np.int64)
-    pair[:, 0] = faces.incidences[starts] // 4
-    shared = faces.counts > 1
-    pair[shared, 1] = faces.incidences[starts[shared] + 1] // 4
+    flat = faces_of_tet.ravel()
+    tets = np.arange(len(flat)) // 4
+    pair = np.empty((faces, 2), np.int64)
+    pair[flat, 1] = tets  # of several writers the last one stays
+    pair[flat[::-1], 0] = tets[::-1]
+    pair[pair[:, 0] == pair[:, 1], 1] = -1
     return frozen(pair)
 
 

@@ -31,8 +31,10 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     vertices = net if net.degree == 1 else ControlNet(net.mesh, 1)
     held_vertices = np.empty((vertices.count, 3), dtype=bool)
     held_vertices[vertices.starts[0]] = held[net.starts[0]]
-    corners = vertices.of_tet[net.morton].astype(np.int32)
-    return _core.Multigrid(operator.kernel, corners, vertices.points, held, held_vertices)
+    corners = vertices.starts[0][net.mesh.tets[net.morton]].astype(np.int32)
+    places = np.empty((vertices.count, 3))
+    places[vertices.starts[0]] = net.mesh.points
+    return _core.Multigrid(operator.kernel, operator.walk(), corners, places, held, held_vertices)
 
 
 def multigrid(

@@ -88,9 +88,9 @@ def solve(
     watch = _Watch(progress)
     number = _threads(threads)
     chosen, why, equations = _equations(body, solver, number, watch)
-    unbalanced = equations.residual(equations.given)
-    _check_range(unbalanced, "the forces at zero free displacement")
-    b = np.where(equations.held, 0.0, unbalanced)
+    b = equations.residual(equations.given)
+    _check_range(b, "the forces at zero free displacement")
+    b[equations.held] = 0.0
     found = _solved(equations, b, chosen, why, rtol, watch)
     return _solution(body, equations, found, number, watch)
 
@@ -207,8 +207,10 @@ def _solved(
         method = _directly if isinstance(equations.stiffness, BlockMatrix) else _without_a_matrix
         if chosen == "cg":
             method = _iteratively
-        found = method(equations, b / size, rtol, watch.iterations(rtol))
-        return replace(found, x=found.x * size, method=f"{found.method}, {why}")
+        b /= size
+        found = method(equations, b, rtol, watch.iterations(rtol))
+        found.x[...] *= size
+        return replace(found, method=f"{found.method}, {why}")
 
 
 def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
@@ -218,8 +220,8 @@ def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _
         raise NotConverged(
             f"the direct solver is left with {history[-1]:.3g} of the residual at zero free "
             f"displacement, and rtol = {rtol:g} was asked for: rounding stops it there. Take a "
-            "larger rtol, or look for tets that are almost flat, nu very close to 1/2 and materials "
-            "of very unequal stiffness",
+            "larger rtol, or look for tets that are almost flat, nu very close to 1/2, and "
+            "materials of very unequal stiffness",
             history,
         )
     return _Found(x, "direct (SuperLU, scaled and refined)", history)
@@ -244,7 +246,8 @@ def _solution(
     body: Body, equations: Equations, found: _Found, threads: int, watch: _Watch
 ) -> Solution:
     with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
-        displacement = Field(equations.net, frozen(equations.given + found.x))
+        found.x[...] += equations.given
+        displacement = Field(equations.net, frozen(found.x))
         operator = equations.stiffness
         if not isinstance(operator, MatrixFree):
             operator = MatrixFree(equations.net, lame_constants(body), threads)
