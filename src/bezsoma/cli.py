@@ -81,8 +81,8 @@ def demo(
     *,
     size: Annotated[
         Literal["small", "medium", "large"],
-        Parameter(help="how fine the head is; the run takes seconds to minutes"),
-    ] = "small",
+        Parameter(help="how fine the head is; small takes seconds, large about half a minute"),
+    ] = "large",
     degree: Annotated[int, Parameter(help="the degree of the displacement")] = 3,
     output: Output = None,
     overwrite: Overwrite = False,
@@ -96,7 +96,7 @@ def demo(
     with shown(quiet=quiet) as progress:
         results = run_demo(size, folder, overwrite=overwrite, degree=degree, progress=progress)
     status = _told(results, folder)
-    print(f"change {folder / 'case.toml'} and run it again, or ask for a finer head with --size")
+    print(f"to go on, change a copy of {folder / 'case.toml'} and give it to: bezsoma run")
     return status
 
 

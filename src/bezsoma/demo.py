@@ -11,6 +11,7 @@ from typing import Literal
 
 from bezsoma.case.reading import Case, case_from
 from bezsoma.case.running import Progress, run_case, silent
+from bezsoma.imaging.phantom import landmarks
 from bezsoma.results import Results
 
 Size = Literal["small", "medium", "large"]
@@ -28,9 +29,9 @@ phantom = "{size}"
 E = 0.015     # MPa: soft tissue of the face
 nu = 0.45
 
-[[support]]   # the skull and the back of the jaw stay where they are
+[[support]]   # the skull, the back of the jaw and the deep side of the neck stay where they are
 type = "fixed"
-on = ["skull", "rami"]
+on = ["skull", "rami", "neck"]
 
 [[support]]   # x to the patient's left, y to the back, z up: forward is -y
 type = "moved"
@@ -43,29 +44,18 @@ over = "rami"
 to = "jaw"
 band = 10
 
-[[probe]]     # where to look: the point of the skin nearest to each
-name = "chin"
-point = [0, -95, -33]
-on = "skin"
-
-[[probe]]
-name = "fold"
-point = [0, -91, -19]
-on = "skin"
-
-[[probe]]
-name = "lower_lip"
-point = [0, -99, -6]
-on = "skin"
-
-[[probe]]
-name = "upper_lip"
-point = [0, -101, 6]
-on = "skin"
-
-[output]
+{probes}[output]
 pictures = ["three-quarter", "front"]
 """
+PROBE = """\
+[[probe]]{remark}
+name = "{name}"
+point = [{x:.3g}, {y:.4g}, {z:.3g}]
+on = "skin"
+
+"""
+LOOKED_AT = ("chin", "fold", "lower lip", "upper lip", "nose tip")
+REMARK = "     # where to look: the point of the skin nearest to this one"
 
 
 def run_demo(
@@ -82,4 +72,18 @@ def run_demo(
 
 def demo_case(size: Size) -> Case:
     """The demo as a case."""
-    return case_from(Path("demo.toml"), TEXT.format(size=size))
+    return case_from(Path("demo.toml"), demo_text(size))
+
+
+def demo_text(size: Size) -> str:
+    """The text of the case, its probes at landmarks of the phantom."""
+    places = landmarks()
+    probes = [
+        PROBE.format(
+            name=name.replace(" ", "_"),
+            remark="" if number else REMARK,
+            **dict(zip("xyz", places[name], strict=True)),
+        )
+        for number, name in enumerate(LOOKED_AT)
+    ]
+    return TEXT.format(size=size, probes="".join(probes))

@@ -5,10 +5,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import bezsoma as bz
 from bezsoma import cli
+from bezsoma.demo import LOOKED_AT, demo_case
+from bezsoma.imaging import landmarks
 
 
 def test_the_demo_leaves_what_a_newcomer_needs(
@@ -26,5 +29,20 @@ def test_the_demo_leaves_what_a_newcomer_needs(
     results = bz.read_results(folder)
     assert results.displacement.degree == 2
     moved = {name: -probe["displacement"][1] for name, probe in results.summary["probes"].items()}
-    assert 4 < moved["chin"] < 7
-    assert moved["chin"] > moved["upper_lip"] > 0
+    assert 6 > moved["fold"] > moved["chin"] > 5
+    assert moved["chin"] > moved["lower_lip"] > moved["upper_lip"] > moved["nose_tip"] > -0.1
+
+
+def test_the_demo_looks_at_landmarks_of_its_head() -> None:
+    places = landmarks()
+    probes = demo_case("large").file.probe
+    assert [probe.name for probe in probes] == [name.replace(" ", "_") for name in LOOKED_AT]
+    for name, probe in zip(LOOKED_AT, probes, strict=True):
+        assert np.abs(np.array(probe.point) - places[name]).max() < 0.06
+
+
+def test_what_holds_the_demo_is_what_its_head_has() -> None:
+    """All that is bone or beside it is held or moved; skin, mucosa and cut are free."""
+    mesh = bz.head_phantom("small")
+    named = {place for support in demo_case("small").file.support for place in support.on}
+    assert named == set(mesh.surfaces) - {"skin", "mucosa", "cut"}

@@ -151,7 +151,7 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
     ),
     "unknown method": (
         ("[output]", '[solver]\nmethod = "lu"\n[output]'),
-        ["solver.method: 'lu'", "'auto', 'direct' or 'cg'"],
+        ["solver.method: 'lu'", "'auto', 'direct', 'multigrid' or 'cg'"],
     ),
     "a tolerance of zero": (
         ("[output]", "[solver]\nrtol = 0\n[output]"),

@@ -15,6 +15,8 @@ import bezsoma as bz
 from house import sources
 
 LINK = re.compile(r"\]\((?!https?:|#|mailto:)([^)#\s]+)(?:#[^)]*)?\)")
+MADE_LATER = "generated/"
+"""The reference is written by Sphinx, which itself complains of links that lead nowhere."""
 
 
 def blocks(root: Path, language: str) -> list[str]:
@@ -53,7 +55,7 @@ def test_links_between_pages_lead_somewhere(root: Path) -> None:
         f"{page.relative_to(root)}: {target}"
         for page in sources.prose(root)
         for target in LINK.findall(page.read_text(encoding="utf-8"))
-        if not (page.parent / target).exists()
+        if not target.startswith(MADE_LATER) and not (page.parent / target).exists()
     ]
     assert dead == []
 

@@ -8,11 +8,11 @@ from typing import Any
 
 MEANINGS = {
     "README.txt": "this text",
-    "case.toml": "the case, as it ran; `bezsoma run` on its original repeats this",
+    "case.toml": "the case as it was, byte for byte",
     "summary.json": "sizes, method, energy, reactions, probes, versions, for programs to read",
     "mesh.npz": "the mesh with its named regions and surfaces",
-    "displacement.npz": "the displacement as Bernstein controls, bit for bit",
-    "displacement.vtu": "the displacement for ParaView or 3D Slicer (curved cells, full degree)",
+    "displacement.npz": "the displacement as Bernstein controls, which are not values at points",
+    "displacement.vtu": "the displacement for ParaView, on curved cells of its full degree",
 }
 DIRECTIONS = "x to the patient's left, y to the back, z up"
 
@@ -27,6 +27,8 @@ def readme(summary: Mapping[str, Any]) -> str:
         _expectations(summary["expectations"]),
         "\n".join(f"Beware: {warning}." for warning in summary["warnings"]),
         _files(summary["files"]),
+        "Run it again, or a changed copy (files that a case names are looked for beside it):\n\n"
+        "    bezsoma run case.toml -o another-folder",
         "Read it again in Python:\n\n    import bezsoma as bz\n"
         '    results = bz.read_results("this folder")\n'
         "    results.displacement.at(points)   # mm, at any points (p, 3) of the mesh",
@@ -37,7 +39,7 @@ def readme(summary: Mapping[str, Any]) -> str:
 def motion_table(probes: Mapping[str, Mapping[str, Any]]) -> str:
     """How far each probe moved, mm; empty without probes.
 
-    >>> print(motion_table({"chin": {"displacement": [0.0, -4.25, 0.5], "size": 4.279}}))
+    >>> print(motion_table({"chin": {"displacement": [-1e-9, -4.25, 0.5], "size": 4.279}}))
     motion, mm          x       y       z    size
     chin             0.00   -4.25    0.50    4.28
     (x to the patient's left, y to the back, z up)
@@ -48,18 +50,22 @@ def motion_table(probes: Mapping[str, Mapping[str, Any]]) -> str:
     lines = [f"{'motion, mm':<{wide}}" + "".join(f"{axis:>8}" for axis in "xyz") + f"{'size':>8}"]
     for name, probe in probes.items():
         numbers = [*probe["displacement"], probe["size"]]
-        lines.append(f"{name:<{wide}}" + "".join(f"{number + 0.0:8.2f}" for number in numbers))
+        lines.append(
+            f"{name:<{wide}}" + "".join(f"{round(number, 2) + 0.0:8.2f}" for number in numbers)
+        )
     return "\n".join([*lines, f"({DIRECTIONS})"])
 
 
 def _what(summary: Mapping[str, Any]) -> str:
-    """Size, method and energy in two lines."""
-    sizes = summary["sizes"]
+    """Size, method and energy, a line each."""
+    sizes, degree, asked = summary["sizes"], summary["degree"], summary["degree_in_case"]
+    instead = "" if degree == asked else f" (the case says {asked})"
     return (
-        f"{sizes['tets']} tets of degree {summary['degree']}, {sizes['controls']} controls; "
-        f"method {summary['method']}, {summary['iterations']} iterations, residual "
+        f"Degree {degree}{instead} on {sizes['tets']} tets: {sizes['free_unknowns']} unknowns.\n"
+        f"Method: {summary['method']}.\n"
+        f"Iterations: {summary['iterations']}; residual relative to that at the start: "
         f"{summary['residual']:.1e}.\n"
-        f"Stored energy {summary['energy']:.6g} N mm; largest displacement "
+        f"Stored energy: {summary['energy']:.6g} N mm; largest displacement: "
         f"{summary['largest_displacement']:.3f} mm."
     )
 

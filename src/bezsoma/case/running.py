@@ -20,13 +20,23 @@ from bezsoma.case.writing import write_results
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.tets import TetMesh
 from bezsoma.results import Results, destination
+from bezsoma.results.archive import NOTICE
+from bezsoma.results.folder import FORMAT
 from bezsoma.solvers.solution import Solution
 from bezsoma.solvers.solve import solve
 
 Progress = Callable[[str, float | None, str], None]
 """Called with a stage, how much of it is done (0 to 1, None where unknown) and a note."""
 
-NOTICE = "BezSoma is research software and not a medical device."
+UNITS = {
+    "length": "mm",
+    "volume": "mm3",
+    "force": "N",
+    "moment": "N mm",
+    "energy": "N mm",
+    "stress": "MPa",
+    "time": "s",
+}
 FAR = 0.05
 """A probe is far from its surface beyond this part of the size of the mesh."""
 BYTES_OF_CONTROL = 400
@@ -60,7 +70,9 @@ def run_case(
     body = body_of(case, mesh, case.file.degree if degree is None else degree)
     place.check_room(_size(body))
     table = case.file.solver
-    solution = solve(body, solver=table.method, rtol=table.rtol, progress=progress)
+    solution = solve(
+        body, solver=table.method, rtol=table.rtol, threads=table.threads, progress=progress
+    )
     summary = summary_of(case, solution, probes)
     summary["seconds"] = perf_counter() - start
     with place.filling() as partial:
@@ -74,10 +86,11 @@ def summary_of(case: Case, solution: Solution, probes: dict[str, Floats]) -> dic
     mesh, degree = solution.body.mesh, solution.body.degree
     probed = motions(case, measured)
     return {
+        "format": FORMAT,
         "title": case.title,
         "case": case.path.name,
         "notice": NOTICE,
-        "units": {"length": "mm", "force": "N", "stress": "MPa", "energy": "N mm"},
+        "units": UNITS,
         "degree_in_case": case.file.degree,
         **solution.summary(),
         "regions": list(mesh.regions),

@@ -267,8 +267,9 @@ class PointForce(Table):
 class Solver(Table):
     """How to solve."""
 
-    method: Literal["auto", "direct", "cg"] = "auto"
+    method: Literal["auto", "direct", "multigrid", "cg"] = "auto"
     rtol: Annotated[float, Field(gt=0, lt=1)] = 1e-8
+    threads: Annotated[int, Field(ge=0, le=1024, description="0: all cores")] | None = None
 
 
 class Probe(Table):

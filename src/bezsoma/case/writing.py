@@ -12,7 +12,7 @@ from bezsoma.case.reading import Case
 from bezsoma.case.readme import readme
 from bezsoma.results import write_fields
 from bezsoma.results.archive import CASE
-from bezsoma.results.folder import FORMAT, SUMMARY
+from bezsoma.results.folder import SUMMARY
 from bezsoma.solvers.solution import Solution
 from bezsoma.view.picture import face_picture
 from bezsoma.view.vtk import write_vtu
@@ -40,9 +40,9 @@ def write_results(
         _write_pictures(folder, case, solution)
     summary["pictures"] = [_picture(view) for view in case.file.output.pictures]
     names = [path.name for path in folder.iterdir()]
-    summary["format"] = FORMAT
     summary["files"] = sorted([*names, README, SUMMARY])
     (folder / README).write_text(readme(summary), encoding="utf-8")
+    summary["history"] = summary.pop("history")  # the longest part comes last
     (folder / SUMMARY).write_text(json.dumps(summary, indent=1) + "\n", encoding="utf-8")
 
 

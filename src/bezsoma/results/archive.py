@@ -27,6 +27,7 @@ from bezsoma.results.folder import FORMAT, SUMMARY
 MESH = "mesh.npz"
 DISPLACEMENT = "displacement.npz"
 CASE = "case.toml"
+NOTICE = "BezSoma is research software and not a medical device."
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +51,7 @@ def write_fields(folder: Path, displacement: Field) -> None:
     write_mesh(folder / MESH, net.mesh)
     np.savez_compressed(
         folder / DISPLACEMENT,
+        notice=np.str_(NOTICE),
         degree=np.int64(net.degree),
         of_tet=net.of_tet,
         controls=displacement.controls,

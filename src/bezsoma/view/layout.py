@@ -53,3 +53,14 @@ class Layout:
     def _top(self) -> int:
         """Height of the page's title in pixels."""
         return self._pixels(54 if self.title else 0)
+
+
+def sheet_size(width: int, columns: int, rows: int, ratio: float, title: bool) -> tuple[int, int]:
+    """The size in pixels of a page whose panels are `ratio` times as high as wide, with bars.
+
+    >>> Layout(sheet_size(1600, 2, 2, 0.75, title=True), 2, 2, title=True, bars=True).panel
+    (770, 578)
+    """
+    flat = Layout((width, 100_000), columns, rows, title, bars=True)
+    across, down = flat.panel
+    return width, 100_000 - rows * (down - round(ratio * across))

@@ -15,8 +15,8 @@ import numpy as np
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError
 from bezsoma.mesh import Field, TetMesh
-from bezsoma.view.camera import fitted
-from bezsoma.view.layout import Layout
+from bezsoma.view.camera import axes, fitted
+from bezsoma.view.layout import Layout, sheet_size
 from bezsoma.view.light import CLAY, REST, SKIN
 from bezsoma.view.restriction import (
     AnyField,
@@ -27,7 +27,7 @@ from bezsoma.view.restriction import (
 )
 from bezsoma.view.shading import Layer, coverage, shaded
 from bezsoma.view.sheet import Bar, Outline, Panel, colours, png, round_levels, sheet
-from bezsoma.view.subject import Named, Subject
+from bezsoma.view.subject import Named, Subject, is_skin
 from bezsoma.view.surfaces import Surface
 from bezsoma.view.written import written
 
@@ -94,18 +94,21 @@ def face_picture(
     limits: tuple[float, float] | None = None,
     table: str = "magma_r",
     title: str = "",
-    size: tuple[int, int] = (1600, 1240),
+    size: tuple[int, int] | None = None,
     overwrite: bool = False,
 ) -> bytes:
     """One sheet as PNG: a face before, after, how far it moved in mm, and both outlines.
 
     `surface` defaults to the surface named skin where the mesh has one, else to the whole
-    boundary. All panels have one scale but the outlines, which are seen from `profile`.
+    boundary. All panels have one scale but the outlines, which are seen from `profile`. Without
+    `size` the sheet is 1600 pixels wide and as high as suits what it shows.
     """
     chosen = "skin" if surface is None and "skin" in mesh.surfaces else surface
     subject = Subject.of(mesh, chosen, rest, displacement, 1.0)
+    points = subject.points()
+    size = _fitting(view, points, bool(title)) if size is None else size
     layout = Layout(_size(size), 2, 2, bool(title), True)
-    camera = fitted(view, subject.points(), layout.panel)
+    camera = fitted(view, points, layout.panel)
     before, after = (subject.surfaces(camera.scale, moved) for moved in (False, True))
     lengths = _numbers(mesh, displacement, after[0], None)
     top = float(lengths.max()) if limits is None else 0.0
@@ -179,8 +182,7 @@ def _bar(numbers: Floats, label: str, limits: tuple[float, float] | None, table:
 
 def _plain(surface: Surface, name: Named, wires: bool = False) -> Layer:
     """A surface without a field on it: skin looks like skin, anything else like clay."""
-    names = (name,) if isinstance(name, str) else name or ()
-    skin = "skin" in names
+    skin = is_skin(name)
     return Layer(surface, SKIN if skin else CLAY, translucent=skin, wires=wires)
 
 
@@ -197,6 +199,13 @@ def _painted(surface: Surface, numbers: Floats, bar: Bar, wires: bool) -> Layer:
 
 def _with_rest(layer: Layer, rest: Surface | None, wires: bool = False) -> list[Layer]:
     return [layer] if rest is None else [layer, Layer(rest, REST, wires=wires)]
+
+
+def _fitting(view: str, points: Floats, title: bool) -> tuple[int, int]:
+    """The size of a sheet of two by two panels with room for what is tall, none wasted on it."""
+    extent = np.ptp(points @ axes(view).T, axis=0)
+    ratio = extent[1] / max(extent[0], 1e-12 * extent.max())
+    return sheet_size(1600, 2, 2, min(0.9, max(0.62, 0.8 * ratio)), title)
 
 
 def _size(size: tuple[int, int]) -> tuple[int, int]:

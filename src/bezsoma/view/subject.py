@@ -22,6 +22,8 @@ _MOST_TRIANGLES = 1_500_000
 """More do not show at any size of picture that is allowed, and cost memory."""
 _QUARTER = 0.25
 """By how much of a pixel the triangles may stray from the polynomial."""
+CREASE, SKIN_CREASE = 0.7, 2.0
+"""Where facets meet at a larger angle in rad, an edge is seen; skin has none but the sharpest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +36,8 @@ class Subject:
     displacement: Field | None
     """In mm."""
     magnified: float
+    crease: float
+    """The angle in rad beyond which facets keep an edge between them."""
 
     @classmethod
     def of(
@@ -46,7 +50,8 @@ class Subject:
             raise InputError(f"a displacement cannot be drawn {magnified} times; give a number")
         facets = facets_named(mesh, surface)
         others = _without(mesh.boundary, facets) if rest else facets[:0]
-        return cls(mesh, facets, others, displacement, magnified)
+        crease = SKIN_CREASE if is_skin(surface) else CREASE
+        return cls(mesh, facets, others, displacement, magnified, crease)
 
     def points(self) -> Floats:
         """Points (p, 3) mm that a camera must show: corners and controls, before and after.
@@ -80,13 +85,22 @@ class Subject:
         parts = self.parts(scale)
         field = self.displacement if moved else None
         first, second = (
-            displaced(self.mesh, facets, field, parts, magnified=self.magnified)
+            displaced(self.mesh, facets, field, parts, crease, self.magnified)
             if len(facets)
             else None
-            for facets in (self.facets, self.rest)
+            for facets, crease in ((self.facets, self.crease), (self.rest, CREASE))
         )
         assert first is not None  # a named surface of a mesh is never empty
         return first, second
+
+
+def is_skin(surface: Named) -> bool:
+    """Whether a surface is shown as skin: by its name, the only thing that says what it is.
+
+    >>> is_skin("skin"), is_skin(("jaw", "skin")), is_skin("jaw"), is_skin(None)
+    (True, True, False, False)
+    """
+    return "skin" in ((surface,) if isinstance(surface, str) else surface or ())
 
 
 def _check_displacement(mesh: TetMesh, displacement: Field) -> None:
