@@ -25,6 +25,7 @@ from bezsoma.view.rays import Scene
 from bezsoma.view.restriction import controls_on, values_at
 from bezsoma.view.shading import Layer, coverage, openness, shaded
 from bezsoma.view.sheet import colours
+from bezsoma.view.subject import Subject
 from bezsoma.view.surfaces import Surface, displaced, parts_for
 
 SMALL = (420, 400)
@@ -264,6 +265,27 @@ def test_the_nearer_surface_hides_the_farther() -> None:
     camera = fitted("front", mesh.points, (60, 60))
     shown = shaded(camera, [Layer(far, (0, 0, 1)), Layer(near, (1, 0, 0))]).colours[30, 30]
     assert shown[0] > 0.3 and shown[0] > 3 * shown[2]
+
+
+def test_skin_has_no_edges_where_a_block_has() -> None:
+    mesh = block()
+    mesh = mesh.with_surface("skin", mesh.boundary)
+    one, plain = (Subject.of(mesh, name, True, None, 1.0) for name in ("skin", None))
+    skin, sharp = (subject.surfaces(1.0, moved=False)[0] for subject in (one, plain))
+    assert skin.vertex.max() + 1 < sharp.vertex.max() + 1
+    along = np.abs(sharp.normals).max(axis=2)
+    assert np.allclose(along, 1) and np.abs(skin.normals).max(axis=2).min() < 0.8
+
+
+@pytest.mark.parametrize(("size", "shape"), [((1, 1, 1), 0.8), ((1, 1, 9), 0.9), ((9, 1, 1), 0.62)])
+def test_the_sheet_is_as_high_as_suits_what_it_shows(
+    size: tuple[float, float, float], shape: float
+) -> None:
+    mesh = block(size)
+    still = field(mesh, 1, lambda p: 0 * p)
+    page = Image.open(io.BytesIO(face_picture(None, mesh, still, view="front")))
+    width, height = Layout(page.size, 2, 2, title=False, bars=True).panel
+    assert page.size[0] == 1600 and abs(height / width - shape) < 0.01
 
 
 def test_wires_darken_the_edges_of_facets_and_nothing_else() -> None:

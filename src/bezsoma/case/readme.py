@@ -65,7 +65,7 @@ def _what(summary: Mapping[str, Any]) -> str:
         f"Method: {summary['method']}.\n"
         f"Iterations: {summary['iterations']}; residual relative to that at the start: "
         f"{summary['residual']:.1e}.\n"
-        f"Stored energy: {summary['energy']:.6g} N mm; largest displacement: "
+        f"Stored energy: {summary['energy']:.6g} N mm; largest displacement anywhere: "
         f"{summary['largest_displacement']:.3f} mm."
     )
 
