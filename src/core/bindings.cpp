@@ -296,7 +296,8 @@ public:
                     report(iteration, residual);
                 });
         }
-        return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite);
+        return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite,
+                              found.rounded);
     }
 
     /// z = B r.

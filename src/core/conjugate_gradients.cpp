@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t piece = 16384; // numbers a thread takes at a time; sums add piece by piece
 constexpr std::size_t padding = 16;
+constexpr int most_beginnings = 3; // from the true residual, before rounding is taken as the reason
 
 template <class Work> void each(Team &team, std::size_t length, const Work &work) {
     team.run((length + piece - 1) / piece, [&](std::size_t p, std::size_t) {
@@ -86,17 +87,19 @@ Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner *bloc
             return r[i] * r[i];
         }));
     };
+    int beginnings = 0;
     double norm = true_residual(), before = 0; // `before` is r.z of the last step, 0 at a start
     found.history.push_back(norm / reference);
     for (int i = 0;; ++i) {
         if (norm <= rtol * reference) {
             norm = true_residual();
             found.converged = norm <= rtol * reference * (1 + 1e-6);
+            found.rounded = !found.converged && ++beginnings > most_beginnings;
             before = 0;
         }
         found.residual = norm / reference;
         watch(i, found.residual);
-        if (found.converged || i == most)
+        if (found.converged || found.rounded || i == most)
             return found;
         const double rz = search.take(r.data(), norm, length);
         search.follow(norm, before > 0 ? rz / before : 0.0, p.data());

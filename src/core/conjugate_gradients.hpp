@@ -16,6 +16,7 @@ struct Convergence {
     double residual = 0;         // the true one at the end, relative
     bool converged = false;
     bool indefinite = false; // a direction without positive energy was met
+    bool rounded = false;    // the true residual does not follow the one of the recurrence down
 };
 
 /// Told the iteration and its relative residual.

@@ -55,8 +55,11 @@ class MatrixFree:
     def _single(self) -> _core.MatrixFree:
         return _core.MatrixFree(self.walk(), self.threads, self.instructions, single=True)
 
-    def walk(self) -> _core.Walk:
-        """The tets in the order in which they numbered the controls, as the core takes them."""
+    def walk(self, unit: float = 1.0) -> _core.Walk:
+        """The tets in the order in which they numbered the controls, as the core takes them.
+
+        lambda and mu are divided by `unit`.
+        """
         net, mesh = self.net, self.net.mesh
         first = [
             net.starts[dim][entities[net.morton]].astype(np.int32)
@@ -69,7 +72,7 @@ class MatrixFree:
             mesh.points,
             mesh.tets,
             mesh.region,
-            np.ascontiguousarray(self.lame),
+            np.ascontiguousarray(self.lame / unit),
         )
 
     def __matmul__(self, x: Floats) -> Floats:

@@ -176,11 +176,13 @@ def _equations(body: Body, solver: str, threads: int, watch: _Watch) -> tuple[st
     with watch.stage("loads", f"{len(body.loads)} given"):
         loads = forces(body, net)
     with watch.stage("stiffness", f"{3 * net.count} unknowns"):
-        stiffness = (
-            MatrixFree(net, lame, threads)
-            if chosen == "multigrid"
-            else assembled(net, *moduli(body), threads)
-        )
+        stiffness: BlockMatrix | MatrixFree
+        if chosen == "multigrid":
+            stiffness = MatrixFree(net, lame, threads)
+            kernel = stiffness.kernel
+            watch.tell("stiffness", None, f"{kernel.instructions}, {kernel.threads} threads")
+        else:
+            stiffness = assembled(net, *moduli(body), threads)
     return (
         chosen,
         why,

@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The preconditioner and its iteration: symmetric, positive, few steps at any size."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg as linalg
+
+from bezsoma import bernstein
+from bezsoma.arrays import Bools, Floats
+from bezsoma.equations.assembled import assembled
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.element import lame_constants, moduli
+from bezsoma.equations.forces import forces
+from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Polynomial, Precedence, Traction
+from bezsoma.mesh import ControlNet, TetMesh, block
+from bezsoma.solvers import solve
+from bezsoma.solvers.multigrid import preconditioner
+from tolerances import ENERGY_NORM
+
+ITERATIONS = {2: 53, 3: 61, 4: 69, 5: 86, 6: 107}
+"""Steps to 1e-8 at nu = 0.3 on the cube below, as the design has them."""
+ALLOWANCE = 1.03
+"""Aggregates are ours, and need a step or two more than the prototype's at degree 4."""
+FLAT = 1.10
+"""How far steps may grow when the mesh is refined."""
+CLOSE = 1e-10
+"""The energy norm of what is left at rtol = 1e-12, relative to the answer."""
+SLENDER = 60
+"""Steps for a bar of 1 : 12 under torsion and bending, at degree 1."""
+CONDITION = 200
+"""Of B K up to degree 3 on a small irregular block at nu = 0.4; degree 4 has 145."""
+FLOAT32 = 1e-5
+"""What rounding in float32 may do to an inner product of two preconditioned vectors."""
+
+
+def cube(degree: int, cells: int, nu: float = 0.3, irregular: float = 0.0) -> Body:
+    """The design's cube: on its bottom, traction on the middle quarter of its top."""
+    mesh = block(cells=cells, irregular=irregular)
+    mesh = mesh.with_surface(
+        "middle", lambda x: (x[:, 2] == 1) & (abs(x[:, :2] - 0.5) < 0.25 + 1e-9).all(axis=1)
+    )
+    load = Traction("middle", value=(0, 0, -1.0))
+    return Body(mesh, degree, LinearElastic(1.0, nu), [Fixed("bottom")], [load])
+
+
+def mixed(degree: int, cells: tuple[int, int, int] = (4, 3, 3)) -> Body:
+    """Planes of symmetry, a moved side, two materials, an irregular mesh."""
+    plain = block(cells=cells, irregular=0.3, seed=2)
+    side = (plain.points[plain.tets].mean(axis=1)[:, 0] > 0.5).astype(int)
+    mesh = TetMesh(plain.points, plain.tets, side, ("fat", "muscle"), surfaces=plain.surfaces)
+    laws = {"fat": LinearElastic(0.003, 0.4), "muscle": LinearElastic(0.06, 0.45)}
+    held = [
+        Fixed("bottom", components="z"),
+        Fixed("front", components="y"),
+        Fixed("left"),
+        Moved("right", translation=(0.1, 0.02, 0)),
+    ]
+    joins = [Precedence(a, over=b) for a in ("right",) for b in ("bottom", "front")]
+    return Body(mesh, degree, laws, held, [Traction("top", value=(0.0001, 0, 0.0002))], joins)
+
+
+class Apart:
+    """A body's operator, matrix, supports and preconditioner."""
+
+    def __init__(self, body: Body, threads: int = 0, instructions: str = "") -> None:
+        self.net = ControlNet(body.mesh, body.degree)
+        self.held: Bools = prescribed(body, self.net).mask
+        operator = MatrixFree(self.net, lame_constants(body), threads, instructions)
+        self.blocks = preconditioner(operator, self.held)
+        self.body, self.operator = body, operator
+
+    def __call__(self, r: Floats) -> Floats:
+        z = np.empty_like(r)
+        self.blocks.apply(np.ascontiguousarray(r), z)
+        return z
+
+    def free_vectors(self, count: int) -> list[Floats]:
+        random = np.random.default_rng(3)
+        found = [random.standard_normal((self.net.count, 3)) for _ in range(count)]
+        return [np.where(self.held, 0.0, r) for r in found]
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4, 5, 6, 8])
+def test_symmetric_positive_and_zero_where_held(degree: int) -> None:
+    B = Apart(mixed(degree))
+    r, s = B.free_vectors(2)
+    Br, Bs = B(r), B(s)
+    size = np.linalg.norm(Br) * np.linalg.norm(s)
+    assert abs(float((s * Br).sum() - (r * Bs).sum())) < FLOAT32 * size
+    assert float((r * Br).sum()) > 0 and float((s * Bs).sum()) > 0
+    assert not Br[B.held].any()
+    np.testing.assert_allclose(B(4 * r), 4 * Br, atol=FLOAT32 * np.abs(Br).max())
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_all_of_its_spectrum_is_positive(degree: int) -> None:
+    """B formed column by column on a small body: positive definite, and BK conditioned well."""
+    B = Apart(Body(block(cells=2, irregular=0.3), degree, LinearElastic(1, 0.4), [Fixed("left")]))
+    free = np.flatnonzero(~B.held.ravel())
+    columns = []
+    for i in free:
+        r = np.zeros(B.held.size)
+        r[i] = 1
+        columns.append(B(r.reshape(-1, 3)).ravel()[free])
+    matrix = np.array(columns)
+    assert np.abs(matrix - matrix.T).max() < FLOAT32 * np.abs(matrix).max()
+    K = assembled(B.net, *moduli(B.body)).scipy().toarray()[np.ix_(free, free)]
+    L = np.linalg.cholesky(K)
+    spectrum = np.linalg.eigvalsh(L.T @ ((matrix + matrix.T) / 2) @ L)
+    assert spectrum.max() < 8 and spectrum.max() < CONDITION * spectrum.min()
+
+
+@pytest.mark.parametrize("degree", [2, 3, 4, 6])
+def test_entity_blocks_are_inverses_of_the_matrix(degree: int) -> None:
+    """Without degree 1: a residual inside one entity comes back as its block's inverse times it.
+
+    Entities that hold nothing of a vertex (interiors, from degree 4) see no other term only where
+    the moments vanish; so moments are taken out of the residual first, and degree 1 stays silent.
+    """
+    net_body = Body(block(cells=2, irregular=0.3), degree, LinearElastic(1, 0.3), [Fixed("left")])
+    B = Apart(net_body)
+    K = assembled(B.net, *moduli(net_body)).scipy().tocsr()
+    elevation = elevated_hats(B.net)
+    for dim in range(1, min(degree, 4)):
+        starts = B.net.starts[dim]
+        inside = {1: degree - 1, 2: (degree - 1) * (degree - 2) // 2}.get(
+            dim, (degree - 1) * (degree - 2) * (degree - 3) // 6
+        )
+        for entity in (0, len(starts) // 2, len(starts) - 1):
+            controls = starts[entity] + np.arange(inside)
+            if B.held[controls].any() or inside < 5:
+                continue
+            weights = elevation[controls]
+            r = np.zeros((B.net.count, 3))
+            rough = np.random.default_rng(1).standard_normal((inside, 3))
+            r[controls] = rough - weights @ np.linalg.lstsq(weights, rough, rcond=None)[0]
+            rows = (3 * controls[:, None] + np.arange(3)).ravel()
+            expected = np.linalg.solve(K[rows][:, rows].toarray(), r[controls].ravel())
+            found = B(r)[controls].ravel()
+            assert np.abs(found - expected).max() < FLOAT32 * np.abs(expected).max()
+
+
+def elevated_hats(net: ControlNet) -> Floats:
+    """The controls (c, v) of the hat functions of degree 1: what carries coarse corrections."""
+    mesh = net.mesh
+    hats = np.zeros((net.count, len(mesh.points)))
+    weights = bernstein.indices(net.degree, 3) / net.degree
+    for controls, corners in zip(net.of_tet, mesh.tets, strict=True):
+        hats[np.ix_(controls, corners)] = weights
+    return hats
+
+
+@pytest.mark.parametrize("degree", ITERATIONS)
+def test_steps_are_few_and_do_not_grow_with_the_mesh(degree: int) -> None:
+    sizes = (8, 16) if degree == 2 else (8, 12) if degree == 3 else (4, 8)
+    steps = [solve(cube(degree, cells), solver="multigrid").iterations for cells in sizes]
+    assert steps[1] <= ITERATIONS[degree] * ALLOWANCE
+    assert steps[1] <= FLAT * steps[0]
+
+
+def test_steps_at_degree_one_hardly_grow() -> None:
+    steps = [solve(cube(1, cells), solver="multigrid").iterations for cells in (12, 20, 28)]
+    assert max(steps) <= FLAT * steps[0] + 1, steps
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.45])
+@pytest.mark.parametrize("irregular", [0.0, 0.3])
+def test_no_more_steps_than_pyamg(irregular: float, nu: float) -> None:
+    """Smoothed aggregation by another code, on the same matrix and with the same rigid motions."""
+    pyamg = pytest.importorskip("pyamg")
+    body = cube(1, 12, nu, irregular)
+    net = ControlNet(body.mesh, 1)
+    held = prescribed(body, net).mask
+    free = np.flatnonzero(~held.ravel())
+    K = assembled(net, *moduli(body)).scipy().tocsr()[free][:, free].tobsr((3, 3))
+    x, y, z = net.points[~held.any(axis=1)].T
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    modes = [[one, zero, zero], [zero, one, zero], [zero, zero, one]]
+    modes += [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    motions = np.array(modes).transpose(2, 1, 0).reshape(-1, 6)
+    ladder = pyamg.smoothed_aggregation_solver(K, B=motions)
+    b = forces(body, net).ravel()[free]
+    steps: list[int] = []
+    M = ladder.aspreconditioner()
+    u, failed = linalg.cg(K, b, rtol=1e-8, M=M, callback=lambda _: steps.append(1))
+    ours = solve(body, solver="multigrid")
+    assert not failed
+    assert ours.iterations <= len(steps)
+    found = ours.displacement.controls.ravel()[free]
+    assert np.abs(found - u).max() < 1e-6 * np.abs(u).max()
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 4, 6])
+@pytest.mark.parametrize("mix", [False, True])
+def test_it_solves_what_the_direct_solver_solves(degree: int, mix: bool) -> None:
+    """Displacements, energies and reactions.
+
+    Where sides are moved, residuals are relative to the large forces at zero free displacement,
+    and twenty times softer tissue adds to what is left in the energy norm.
+    """
+    body = mixed(degree, (3, 2, 2)) if mix else cube(degree, 3)
+    exact = solve(body, solver="direct")
+    K = assembled(exact.net, *moduli(body))
+    u = exact.displacement.controls
+    size = float((u * (K @ u)).sum())
+    for rtol, bound in ((1e-8, 10 * ENERGY_NORM if mix else ENERGY_NORM), (1e-12, CLOSE)):
+        found = solve(body, solver="multigrid", rtol=rtol)
+        e = found.displacement.controls - u
+        assert float((e * (K @ e)).sum()) < bound**2 * size
+        assert found.energy == pytest.approx(exact.energy, rel=bound)
+        forces = {name: reaction.force for name, reaction in exact.reactions.items()}
+        top = max(float(np.abs(force).max()) for force in forces.values())
+        for name, force in forces.items():
+            np.testing.assert_allclose(found.reactions[name].force, force, atol=10 * bound * top)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 5])
+def test_the_residual_told_is_the_true_one(degree: int) -> None:
+    body = mixed(degree)
+    for rtol in (1e-4, 1e-8, 1e-12):
+        found = solve(body, solver="multigrid", rtol=rtol)
+        known = prescribed(body, found.net)
+        K = assembled(found.net, *moduli(body))
+        at = [forces(body, found.net) - K @ u for u in (known.values, found.displacement.controls)]
+        start, end = (float(np.linalg.norm(np.where(known.mask, 0.0, r))) for r in at)
+        # K u of two ways differs by rounding of K u, which is far above the residual at 1e-12
+        assert found.residual == pytest.approx(end / start, rel=1e-3, abs=1e-13)
+        assert found.residual <= rtol * (1 + 1e-6)
+        assert found.history[0] == pytest.approx(1) and found.history[-1] == found.residual
+        assert len(found.history) == found.iterations + 1
+        u = found.displacement.controls
+        assert (u[known.mask] == known.values[known.mask]).all()
+
+
+def test_levels_shrink_to_a_small_dense_one() -> None:
+    B = Apart(cube(1, 20))
+    levels = B.blocks.levels
+    assert levels[0] == 21**3
+    assert all(below < above / 3 for above, below in pairwise(levels))
+    assert levels[-1] <= 300
+    assert B.blocks.bytes > 21**3 * 9 * 4 * 10
+
+
+def test_a_motion_that_is_missing_would_be_missed() -> None:
+    """A body that can hardly resist turning: what aggregation would lose without rotations."""
+    mesh = block(size=(1, 1, 12), cells=(3, 3, 36))
+    body = Body(
+        mesh,
+        1,
+        LinearElastic(1, 0.3),
+        [Fixed("bottom")],
+        [Traction("top", value=Polynomial.parse(["0.1*(0.5-y)", "0.1*(x-0.5)", "0.001*x"]))],
+    )
+    assert solve(body, solver="multigrid").iterations <= SLENDER
+
+
+@pytest.mark.parametrize("degree", [1, 3])
+def test_shapes_that_do_not_fit_are_refused(degree: int) -> None:
+    B = Apart(mixed(degree))
+    wrong = np.zeros((B.net.count - 1, 3))
+    with pytest.raises(ValueError, match="one row a control"):
+        B.blocks.apply(wrong, wrong.copy())
+    with pytest.raises(ValueError, match="one row a control"):
+        B.blocks.solve(wrong, wrong.copy(), 1.0, 1e-8, 10, lambda *_: None)
+    with pytest.raises(ValueError, match="must fit"):
+        preconditioner(B.operator, B.held[:, :].repeat(2, axis=0))

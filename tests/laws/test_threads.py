@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Threads do not show in the answer, Ctrl-C is heard, and other Python threads run on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bezsoma as bz
+from bezsoma import _core
+from bezsoma.arrays import Floats
+from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.errors import InputError
+from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Precedence, Traction
+from bezsoma.mesh import ControlNet, TetMesh, block
+from bezsoma.solvers import Solution, solve
+from cases.written import case_file
+
+THREADS = (1, 2, 5)
+SETS = _core.instruction_sets()
+PROMPT = 1.0
+"""Seconds within which Ctrl-C stops a computation."""
+LAME = np.array([[0.6, 0.4], [60.0, 4.0]])
+
+
+def two_materials(cells: tuple[int, int, int]) -> TetMesh:
+    """An irregular block, soft and hard."""
+    plain = block(cells=cells, irregular=0.3, seed=4)
+    hard = (plain.points[plain.tets].mean(axis=1)[:, 2] > 0.6).astype(int)
+    return TetMesh(plain.points, plain.tets, hard, ("soft", "hard"), surfaces=plain.surfaces)
+
+
+def moved(degree: int, cells: tuple[int, int, int]) -> Body:
+    """A body of two materials, its left side held, the right one moved and turned."""
+    supports = [
+        Fixed("left"),
+        Moved("right", translation=(0.02, 0.1, 0), axis=(1, 0, 0), angle=0.1),
+        Fixed("front", components="y"),
+    ]
+    joins = [Precedence(side, over="front") for side in ("left", "right")]
+    laws = {"soft": LinearElastic(0.015, 0.45), "hard": LinearElastic(1.0, 0.3)}
+    return Body(
+        two_materials(cells), degree, laws, supports, [Traction("top", value=(0, 0, 1e-3))], joins
+    )
+
+
+@pytest.mark.parametrize("instructions", SETS)
+@pytest.mark.parametrize(("degree", "cells"), [(1, 16), (2, 10), (3, 7), (6, 4)])
+def test_an_application_has_the_same_bits(degree: int, cells: int, instructions: str) -> None:
+    net = ControlNet(two_materials((cells,) * 3), degree)
+    u = np.random.default_rng(2).standard_normal((net.count, 3, 3))
+    operators = [MatrixFree(net, LAME, threads, instructions) for threads in THREADS]
+    assert [operator.kernel.threads for operator in operators] == list(THREADS)
+    several, single = operators[0] @ u, operators[0].single(u[..., 0].astype(np.float32))
+    one = operators[0] @ u[..., 0]
+    for operator in operators:
+        for _ in range(3):
+            assert (operator @ u == several).all()
+            assert (operator @ u[..., 0] == one).all()
+            assert (operator.single(u[..., 0].astype(np.float32)) == single).all()
+
+
+def answer(solution: Solution) -> tuple[Floats, float, tuple[float, ...]]:
+    """All that a solve leaves."""
+    return solution.displacement.controls, solution.energy, solution.history
+
+
+@pytest.mark.parametrize(("degree", "cells"), [(1, 18), (2, 12), (3, 8), (5, 4)])
+def test_a_whole_solve_has_the_same_bits(degree: int, cells: int) -> None:
+    body = moved(degree, (cells, cells - 1, cells))
+    first, *others = (solve(body, solver="multigrid", threads=n) for n in (*THREADS, 2, 1))
+    assert first.iterations > 10
+    for other in others:
+        for a, b in zip(answer(first), answer(other), strict=True):
+            assert np.array_equal(a, b)
+
+
+def test_instruction_sets_differ_by_rounding_only() -> None:
+    net = ControlNet(two_materials((5, 4, 4)), 4)
+    u = np.random.default_rng(2).standard_normal((net.count, 3))
+    forces = [MatrixFree(net, LAME, 2, name) @ u for name in SETS]
+    for f in forces:
+        assert np.abs(f - forces[0]).max() < 1e-14 * np.abs(f).max()
+
+
+def test_many_more_threads_than_pieces() -> None:
+    net = ControlNet(block(), 2)
+    u = net.points.copy()
+    expected = MatrixFree(net, LAME[:1], 1) @ u
+    assert (MatrixFree(net, LAME[:1], 40) @ u == expected).all()
+
+
+def test_operators_come_and_go() -> None:
+    """Teams of threads start and end with their operators, used or not."""
+    net = ControlNet(block(), 1)
+    before = threads_of_this_process()
+    for _ in range(50):
+        operator = MatrixFree(net, LAME[:1], 5)
+        assert operator.kernel.threads == 5
+        operator @ net.points
+        assert threads_of_this_process() == before + 4
+        del operator
+    assert threads_of_this_process() == before
+
+
+def threads_of_this_process() -> int:
+    """As the system counts them; 0 where it does not tell, which then says nothing."""
+    tasks = Path("/proc/self/task")
+    if not tasks.is_dir():
+        pytest.skip("this system does not count the threads of a process")
+    return len(list(tasks.iterdir()))
+
+
+# ------------------------------------------------------------------ beside other threads
+
+
+def test_other_python_threads_run_on_during_a_solve() -> None:
+    body, ticks, done = moved(4, (7, 7, 7)), [time.monotonic()], threading.Event()
+
+    def tick() -> None:
+        while not done.wait(0.002):
+            ticks.append(time.monotonic())
+
+    clock = threading.Thread(target=tick)
+    clock.start()
+    solution = solve(body, solver="multigrid", threads=2)
+    done.set()
+    clock.join()
+    assert len(ticks) > 100 * solution.timings["solving"]
+    assert np.diff(ticks).max() < 0.5
+
+
+def test_two_solves_at_once() -> None:
+    bodies = [moved(2, (8, 8, 8)), moved(4, (4, 4, 4))]
+    expected = [answer(solve(body, solver="multigrid")) for body in bodies]
+    found: dict[int, Any] = {}
+
+    def run(which: int) -> None:
+        found[which] = answer(solve(bodies[which % 2], solver="multigrid", threads=2))
+
+    runners = [threading.Thread(target=run, args=(which,)) for which in range(4)]
+    for runner in runners:
+        runner.start()
+    for runner in runners:
+        runner.join()
+    for which in range(4):
+        for a, b in zip(expected[which % 2], found[which], strict=True):
+            assert np.array_equal(a, b)
+
+
+SHARED = """
+import threading, numpy as np
+from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.mesh import ControlNet, block
+net = ControlNet(block(cells=8), 3)
+operator = MatrixFree(net, np.array([[0.6, 0.4]]), 2)
+expected, wrong = operator @ net.points, []
+def apply():
+    for _ in range(100):
+        if not (operator @ net.points == expected).all():
+            wrong.append(1)
+threads = [threading.Thread(target=apply) for _ in range(3)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+print("wrong", len(wrong))
+"""
+
+
+def test_one_operator_in_two_threads() -> None:
+    """They take turns; without a lock they would take each other's jobs, and hang or be wrong."""
+    with script(SHARED) as child:
+        try:
+            out, err = child.communicate(timeout=15)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            pytest.fail("two threads that apply one operator wait for each other for ever")
+    assert (out, child.returncode) == ("wrong 0\n", 0), err
+
+
+def script(text: str, *arguments: str) -> subprocess.Popen[str]:
+    """A Python of its own that sees the BezSoma that this one sees."""
+    path = f"import sys; sys.path[:0] = {sys.path!r}\n"
+    return subprocess.Popen(
+        [sys.executable, "-S", "-c", path + text, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+# ------------------------------------------------------------------ Ctrl-C
+
+INTERRUPTED = """
+import time, bezsoma as bz
+mesh = bz.block(cells=int(sys.argv[1]))
+supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]
+body = bz.Body(mesh, int(sys.argv[2]), bz.LinearElastic(1.0, 0.49), supports)
+def progress(stage, fraction, note):
+    if stage == sys.argv[3]:
+        print("there", flush=True)
+try:
+    bz.solve(body, solver="multigrid", rtol=1e-14, progress=progress)
+    print("never stopped", flush=True)
+except KeyboardInterrupt:
+    print("stopped", flush=True)
+small = bz.Body(bz.block(cells=3), 3, bz.LinearElastic(1.0, 0.3), supports)
+a, b = bz.solve(small, solver="multigrid"), bz.solve(small, solver="direct")
+print("right" if abs(a.energy / b.energy - 1) < 1e-10 else "wrong", flush=True)
+"""
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.4])
+@pytest.mark.parametrize(("stage", "degree", "cells"), [("solving", 4, 12), ("numbering", 2, 24)])
+def test_ctrl_c_stops_it_and_python_goes_on(
+    stage: str, degree: int, cells: int, delay: float
+) -> None:
+    """At the start of a stage or some way into it: in Python, while setting up, in a solve."""
+    with script(INTERRUPTED, str(cells), str(degree), stage) as child:
+        assert child.stdout is not None
+        assert child.stdout.readline() == "there\n"
+        time.sleep(delay)
+        sent = time.monotonic()
+        os.kill(child.pid, signal.SIGINT)
+        said = ""
+        while said not in ("stopped\n", "never stopped\n"):
+            said = child.stdout.readline()
+        took = time.monotonic() - sent
+        rest, errors = child.communicate(timeout=60)
+    assert said == "stopped\n"
+    assert took < PROMPT
+    assert rest.endswith("right\n"), errors
+    assert child.returncode == 0
+
+
+def test_an_error_in_the_progress_comes_through() -> None:
+    def fails(stage: str, fraction: float | None, note: str) -> None:
+        if "iteration 7" in note:
+            raise RuntimeError("the display broke")
+
+    body = moved(3, (4, 4, 4))
+    with pytest.raises(RuntimeError, match="the display broke"):
+        solve(body, solver="multigrid", progress=fails)
+    assert solve(body, solver="multigrid").residual <= 1e-8
+
+
+# ------------------------------------------------------------------ how many
+
+
+@pytest.mark.parametrize("given", ["two", "", "1.5", "-1", "99999", "nan", "0x4"])
+def test_a_wrong_number_in_the_environment(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BEZSOMA_THREADS", given)
+    with pytest.raises(
+        InputError, match=r"BEZSOMA_THREADS = .* is no number of threads: give 1 to"
+    ):
+        solve(moved(1, (2, 2, 2)))
+
+
+@pytest.mark.parametrize("given", [-1, 1.5, True, "all", 99999, float("nan"), [2], 2**70])
+def test_a_wrong_number_in_python(given: Any) -> None:
+    with pytest.raises(InputError, match=r"threads = .* is no number of threads: give 1 to"):
+        solve(moved(1, (2, 2, 2)), threads=given)
+
+
+def test_the_environment_is_heard_and_the_argument_before_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    body = moved(2, (3, 3, 3))
+    monkeypatch.setenv("BEZSOMA_THREADS", " 3 ")
+    assert "3 threads" in solve(body, solver="multigrid").method
+    assert "2 threads" in solve(body, solver="multigrid", threads=2).method
+    assert "2 threads" in solve(body, solver="multigrid", threads=np.int64(2)).method
+    cores = os.cpu_count()
+    assert f"{cores} thread" in solve(body, solver="multigrid", threads=0).method
+
+
+def test_the_case_file_says_how_many(tmp_path: Path) -> None:
+    table = '[solver]\nmethod = "multigrid"\nthreads = 3\n\n[output]'
+    case = bz.read_case(case_file(tmp_path, ("[output]", table)))
+    assert "3 threads" in bz.run_case(case, tmp_path / "out").summary["method"]
+    for wrong, said in (("-1", "-1"), ("5000", "1024"), ('"two"', "two"), ("2.5", "2.5")):
+        text = table.replace("3", wrong)
+        with pytest.raises(InputError, match=r"solver\.threads") as caught:
+            bz.read_case(case_file(tmp_path, ("[output]", text), name="wrong.toml"))
+        assert said in str(caught.value)
