@@ -37,9 +37,7 @@ Research software, not a medical device.""",
 mesh_app = App(name="mesh", help="Look at meshes.", help_format="plaintext")
 app.command(mesh_app)
 
-Output = Annotated[
-    Path | None, Parameter(("--output", "-o"), help="the folder to make for the results")
-]
+OUTPUT = ("--output", "-o")
 Overwrite = Annotated[
     bool, Parameter("--overwrite", negative="", help="replace results that stand there already")
 ]
@@ -53,7 +51,12 @@ def run(
     case: Path,
     /,
     *,
-    output: Output = None,
+    output: Annotated[
+        Path | None,
+        Parameter(
+            OUTPUT, help="the folder to make for the results; where not given, CASE-degree-N"
+        ),
+    ] = None,
     degree: Annotated[int | None, Parameter(help="instead of the degree in the case")] = None,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -63,7 +66,7 @@ def run(
     Parameters
     ----------
     case
-        the case, a TOML file; see docs/case_file.md for what may stand in it
+        the case, a TOML file: see docs/case_file.md; `bezsoma demo` leaves one, case.toml
     """
     from bezsoma.case import read_case, run_case
     from bezsoma.progress import shown
@@ -84,11 +87,19 @@ def demo(
         Parameter(help="how fine the head is; small takes seconds, large about half a minute"),
     ] = "large",
     degree: Annotated[int, Parameter(help="the degree of the displacement")] = 3,
-    output: Output = None,
+    output: Annotated[
+        Path | None,
+        Parameter(
+            OUTPUT, help="the folder to make for the results; where not given, bezsoma-demo-SIZE"
+        ),
+    ] = None,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> int:
-    """Move the jaw of a built-in head 6 mm forward and look at its face."""
+    """Move the jaw of a built-in head 6 mm forward and look at its face.
+
+    The case.toml among the results is an example to change and give to `bezsoma run`.
+    """
     from bezsoma.demo import run_demo
     from bezsoma.progress import shown
 
@@ -106,7 +117,10 @@ def info(
     /,
     *,
     surfaces: Annotated[
-        str | None, Parameter(help="names for the tags in the file, as in skin=1,jaw=3")
+        str | None, Parameter(help="names for the tags of surfaces, as in skin=1,jaw=3")
+    ] = None,
+    regions: Annotated[
+        str | None, Parameter(help="names for the tags of regions, as in fat=1,muscle=2")
     ] = None,
 ) -> int:
     """Say what is in a mesh file: sizes, named surfaces, and how good the tets are.
@@ -119,25 +133,26 @@ def info(
     from bezsoma.mesh.files import read_mesh
     from bezsoma.mesh_info import mesh_report
 
-    tags = None if surfaces is None else tags_named(surfaces)
-    for line in mesh_report(read_mesh(file, surfaces=tags)):
+    outer = None if surfaces is None else tags_named(surfaces, "--surfaces")
+    inner = None if regions is None else tags_named(regions, "--regions")
+    for line in mesh_report(read_mesh(file, surfaces=outer, regions=inner)):
         print(line)
     return DONE
 
 
-def tags_named(text: str) -> dict[str, int]:
-    """The tags that `--surfaces` names.
+def tags_named(text: str, option: str) -> dict[str, int]:
+    """The tags that `--surfaces` or `--regions` names.
 
-    >>> tags_named("skin=1, jaw=3")
+    >>> tags_named("skin=1, jaw=3", "--surfaces")
     {'skin': 1, 'jaw': 3}
     """
     tags: dict[str, int] = {}
     for entry in text.split(","):
         name, equals, tag = (part.strip() for part in entry.partition("="))
         if not (name and equals and tag.lstrip("-").isdigit()):
-            raise InputError(f"--surfaces: {entry!r} is no name with a tag; write skin=1,jaw=3")
+            raise InputError(f"{option}: {entry!r} is no name with a tag; write skin=1,jaw=3")
         if name in tags:
-            raise InputError(f"--surfaces: {name!r} is named twice; give each surface one name")
+            raise InputError(f"{option}: {name!r} is named twice; give each tag a name of its own")
         tags[name] = int(tag)
     return tags
 

@@ -229,7 +229,7 @@ LOOK_ALIKES = {
     "one name with and without brackets": [('on = "left"', 'on = ["left"]')],
     "moduli by name": [("E = 0.015\nnu = 0.3", "G = 0.005\nkappa = 0.01")],
     "a constant as a formula": [('"1e-5*x"', '"1e-5"')],
-    "components in another order": [('on = "left"', 'on = "left"\ncomponents = "xyz"')],
+    "components in another order": [('on = "left"', 'on = "left"\ncomponents = "zxy"')],
     "lines ended as on Windows": [("\n", "\r\n")],
     "a comment after a header": [("[mesh]", "[mesh] # where the [tets] come from")],
 }
@@ -239,6 +239,7 @@ LOOK_ALIKES = {
 def test_what_looks_wrong_and_is_right_is_accepted(kind: str, tmp_path: Path) -> None:
     case = bz.read_case(case_file(tmp_path, *LOOK_ALIKES[kind]))
     assert len(case.file.support) == 2
+    assert case.file.support[0].components == "xyz"
 
 
 def test_a_body_without_loads_that_is_held_stays_where_it_is(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from bezsoma import InputError
-from bezsoma.case import read_case
+from bezsoma.case import read_case, run_case
 from bezsoma.case.build import body_of
 from bezsoma.case.expectations import probe_points
 from bezsoma.case.sources import mesh_of
@@ -47,8 +47,14 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
         ["degree:", "whole number", "'2' (a text)"],
     ),
     "degree is a truth": (("degree = 2", "degree = true"), ["degree:", "whole number", "True"]),
-    "degree too high": (("degree = 2", "degree = 11"), ["degree: 11", "less than or equal to 10"]),
-    "degree zero": (("degree = 2", "degree = 0"), ["degree: 0", "greater than or equal to 1"]),
+    "degree too high": (
+        ("degree = 2", "degree = 11"),
+        ["degree: 11 is out of range: 1 to 10 can stand here, line 3"],
+    ),
+    "degree zero": (
+        ("degree = 2", "degree = 0"),
+        ["degree: 0 is out of range: 1 to 10 can stand here, line 3"],
+    ),
     "no degree": (("degree = 2", ""), ["degree: this key is missing", "1 to 10"]),
     "title is a number": (('"A block"', "7"), ["title: a text in quotes is needed", "7"]),
     "two sources of the mesh": (
@@ -117,6 +123,10 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
         ('on = "left"', 'on = "left"\ncomponents = "xw"'),
         ["support.[0].components: 'xw'", "'xyz'"],
     ),
+    "a component twice": (
+        ('on = "left"', 'on = "left"\ncomponents = "zxz"'),
+        ["support.[0].components: 'zxz'", "'xyz'"],
+    ),
     "two components of a vector": (
         ("[0.1, 0, 0]", "[0.1, 0]"),
         ["support.[1].translation: three entries are needed (x, y, z), not 2"],
@@ -155,11 +165,19 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
     ),
     "a tolerance of zero": (
         ("[output]", "[solver]\nrtol = 0\n[output]"),
-        ["solver.rtol: 0", "greater than 0"],
+        ["solver.rtol: 0 is out of range: numbers above 0 and below 1 can stand here"],
+    ),
+    "too many threads": (
+        ("[output]", "[solver]\nthreads = -1\n[output]"),
+        ["solver.threads: -1 is out of range: 0 to 1024 can stand here"],
+    ),
+    "a degree of an expectation": (
+        ("[0.04, 0.06]", "[0.04, 0.06]\ndegrees = [2, 12]"),
+        ["expect.[0].degrees.[1]: 12 is out of range: 1 to 10 can stand here"],
     ),
     "a band below zero": (
         ("[[load]]", '[[join]]\ntype = "graded"\nover = "left"\nto = "top"\nband = -1\n\n[[load]]'),
-        ["join.[0].band: -1", "greater than 0"],
+        ["join.[0].band: -1 is out of range: numbers above 0 can stand here"],
     ),
     "a probe with a dot in its name": (
         ('name = "middle"', 'name = "mid.dle"'),
@@ -361,3 +379,46 @@ def test_a_damaged_mesh_file_is_refused_with_the_place_in_the_case(tmp_path: Pat
     found = message(case_file(tmp_path, (old, 'file = "face.npz"')))
     assert found.startswith("case.toml: mesh.file: ")
     assert "face.npz" in found
+
+
+def refusal(folder: Path, *changes: Change) -> str:
+    """What is said when the equations of a case are set up."""
+    with pytest.raises(InputError) as caught:
+        run_case(read_case(case_file(folder, *changes)), folder / "out")
+    assert not (folder / "out").exists()
+    return str(caught.value)
+
+
+def test_supports_that_collide_are_told_what_to_write_into_the_case(tmp_path: Path) -> None:
+    found = refusal(tmp_path, ('on = "left"', 'on = "back"'))
+    assert found.startswith("case.toml: Fixed on 'back' and Moved on 'right' prescribe different")
+    assert "Graded(over='back', to='right', band=<mm>)" in found
+    assert '[[join]] type = "precedence" place = "right" over = "back"' in found
+    assert '[[join]] type = "graded" over = "back" to = "right" band = <mm>' in found
+    assert '[[join]] type = "gap" free = "back" at = "right" width = <mm>' in found
+
+
+@pytest.mark.parametrize(
+    "join",
+    [
+        'type = "precedence"\nplace = "right"\nover = "back"',
+        'type = "graded"\nover = "back"\nto = "right"\nband = 1.5',
+        'type = "gap"\nfree = "back"\nat = "right"\nwidth = 0.5',
+    ],
+)
+def test_each_table_that_is_told_there_is_taken(join: str, tmp_path: Path) -> None:
+    changes = ('on = "left"', 'on = "back"'), ("[[load]]", f"[[join]]\n{join}\n\n[[load]]")
+    free = ("[0.04, 0.06]", "[-1, 1]")
+    results = run_case(read_case(case_file(tmp_path, *changes, free)), tmp_path / "out")
+    assert results.displacement.controls.any()
+
+
+def test_motions_that_are_left_are_told_what_to_write_into_the_case(tmp_path: Path) -> None:
+    loose = (
+        ('type = "moved"', 'type = "fixed"\ncomponents = "x"'),
+        ("translation = [0.1, 0, 0]", ""),
+    )
+    found = refusal(tmp_path, ('on = "left"', 'on = "left"\ncomponents = "x"'), *loose)
+    assert found.startswith("case.toml: the supports leave motions that cost no energy")
+    assert "Hold (Fixed, Moved, Prescribed) a surface of what moves" in found
+    assert 'in the case file: [[support]] type = "fixed" on = "<place>"' in found

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any, NoReturn
 
+import numpy as np
 import pytest
 
 from bezsoma import NotConverged, block, cli, write_mesh
@@ -104,6 +105,7 @@ def test_a_degree_that_is_not_built_is_refused(
         (["mesh", "info", "nowhere.npz"], ["nowhere.npz"]),
         (["mesh", "info", "a.npz", "--surfaces", "skin"], ["'skin' is no name with a tag"]),
         (["mesh", "info", "a.npz", "--surfaces", "a=1,a=2"], ["'a' is named twice"]),
+        (["mesh", "info", "a.npz", "--regions", "fat"], ["--regions: 'fat' is no name with a tag"]),
         (["mesh", "inof"], ["inof", "info"]),
     ],
 )
@@ -183,13 +185,54 @@ def test_a_mesh_is_described(tmp_path: Path, capsys: Printed) -> None:
     assert "mean ratio" in out
 
 
+def test_tags_of_a_mesh_are_named(tmp_path: Path, capsys: Printed) -> None:
+    mesh = block(size=(2, 1, 3), cells=(2, 1, 3))
+    tags = np.where(mesh.points[mesh.tets].mean(axis=1)[:, 2] < 1, 1, 2)
+    facets = mesh.facets_of("top")
+    path = tmp_path / "tagged.npz"
+    np.savez(
+        path,
+        points=mesh.points,
+        tets=mesh.tets,
+        tet_tags=tags,
+        facets=facets,
+        facet_tags=np.full(len(facets), 7),
+    )
+    assert ran("mesh", "info", path, "--surfaces", "skin=7", "--regions", "fat=1,muscle=2") == 0
+    out = capsys.readouterr().out
+    assert [name for name in ("surface skin", "region  fat", "region  muscle") if name in out] == [
+        "surface skin",
+        "region  fat",
+        "region  muscle",
+    ]
+
+
+def test_curved_cells_of_our_own_are_told_where_their_mesh_is(
+    tmp_path: Path, capsys: Printed
+) -> None:
+    path = case_file(tmp_path)
+    assert ran("run", path, "-q", "-o", tmp_path / "out") == 0
+    capsys.readouterr()
+    assert ran("mesh", "info", tmp_path / "out" / "displacement.vtu") == 2
+    assert "read mesh.npz beside it" in capsys.readouterr().err
+    assert ran("mesh", "info", tmp_path / "out" / "mesh.npz") == 0
+    capsys.readouterr()
+
+
 def test_help_is_enough_to_start_from(capsys: Printed) -> None:
     assert ran("--help") == 0
     out = capsys.readouterr().out
     assert "Start with: bezsoma demo" in out
     assert all(word in out for word in ("run", "demo", "mesh", "--version", "not a medical device"))
     assert ran("run", "--help") == 0
-    assert "--overwrite" in capsys.readouterr().out
+    out = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert "--overwrite" in out
+    assert "CASE-degree-N" in out
+    assert "`bezsoma demo` leaves one, case.toml" in out
+    assert ran("demo", "--help") == 0
+    out = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert "bezsoma-demo-SIZE" in out
+    assert "The case.toml among the results is an example" in out
     assert ran() == 0
     assert "Start with" in capsys.readouterr().out
 

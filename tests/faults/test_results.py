@@ -15,6 +15,7 @@ import pytest
 
 from bezsoma import InputError, NotConverged
 from bezsoma.case import read_case, run_case, running
+from bezsoma.errors import BezSomaError
 from bezsoma.results import destination, read_results
 from cases.written import case_file
 
@@ -240,6 +241,51 @@ def test_a_flipped_bit_is_refused(results: Path) -> None:
     whole[len(whole) // 2] ^= 4
     path.write_bytes(whole)
     assert "displacement.npz" in damage(results)
+
+
+def read_or_refused(folder: Path) -> str | None:
+    """What is said of damaged results, None where they were read; nothing else may come out."""
+    try:
+        read_results(folder)
+    except BezSomaError as error:
+        return str(error)
+    return None
+
+
+@pytest.mark.parametrize("file", ["mesh.npz", "displacement.npz"])
+def test_flipped_bytes_are_refused_or_do_no_harm(file: str, results: Path) -> None:
+    """Zip, zlib and NumPy each have their own errors; the reader of results sees one kind."""
+    path, good = results / file, read_results(results)
+    whole = path.read_bytes()
+    random = np.random.default_rng(20240)
+    for _ in range(100):
+        damaged = np.frombuffer(whole, dtype=np.uint8).copy()
+        at = random.integers(30, len(whole), size=random.integers(1, 4))
+        damaged[at] ^= random.integers(1, 256, size=len(at), dtype=np.uint8)
+        path.write_bytes(damaged.tobytes())
+        said = read_or_refused(results)
+        if said is None:
+            back = read_results(results)
+            assert back.displacement.controls.tobytes() == good.displacement.controls.tobytes()
+            assert back.mesh.points.tobytes() == good.mesh.points.tobytes()
+        else:
+            assert file in said, said
+
+
+def test_a_method_of_compression_that_is_not_known_is_refused(results: Path) -> None:
+    """The two bytes that name the method, in every entry of the archive's directory."""
+    path = results / "displacement.npz"
+    entry, method = b"PK\x01\x02", 10
+    parts = path.read_bytes().split(entry)
+    path.write_bytes(
+        entry.join([parts[0], *(p[: method - 4] + b"\x63\0" + p[method - 2 :] for p in parts[1:])])
+    )
+    assert "displacement.npz' is damaged" in damage(results)
+
+
+def test_a_case_that_is_no_text_is_refused(results: Path) -> None:
+    (results / "case.toml").write_bytes(b"\xff\xfe")
+    assert "case.toml' is damaged" in damage(results)
 
 
 def changed(results: Path, **arrays: Any) -> str:

@@ -40,6 +40,13 @@ WANTED = {
     "model_attributes_type": "a table",
     "finite_number": "a finite number",
 }
+LIMITS = {
+    "greater_than_equal": "ge",
+    "greater_than": "gt",
+    "less_than_equal": "le",
+    "less_than": "lt",
+}
+"""Complaints that a number is out of range, and what the schema calls the bound."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +120,8 @@ def _message(error: dict[str, Any], trace: Trace) -> str:
         return f"at least one entry is needed here{_meaning(key, trace.owners)}"
     if kind == "string_pattern_mismatch":
         return f"{given!r} is no word: give a letter, then letters, digits, '-' and '_'"
+    if kind in LIMITS:
+        return f"{given!r} is out of range: {_range(trace)} can stand here"
     return f"{given!r} cannot stand here: {error['msg'][0].lower()}{error['msg'][1:]}"
 
 
@@ -171,6 +180,28 @@ def _tags(models: list[Table]) -> list[str]:
 
 def _keys(models: list[Table]) -> list[str]:
     return sorted({key for model in models for key in model.model_fields})
+
+
+def _range(trace: Trace) -> str:
+    """The numbers that the schema allows at a place, both ends of them."""
+    key = next(part for part in reversed(trace.path) if isinstance(part, str))
+    fields = [model.model_fields[key] for model in trace.owners if key in model.model_fields]
+    ends = dict(end for each in fields for end in _ends(each))
+    if ends.keys() == {"ge", "le"}:
+        return f"{ends['ge']} to {ends['le']}"
+    words = {"ge": "from {} up", "gt": "above {}", "le": "up to {}", "lt": "below {}"}
+    return "numbers " + " and ".join(words[end].format(ends[end]) for end in words if end in ends)
+
+
+def _ends(part: Any) -> Iterator[tuple[str, Any]]:
+    """The bounds that a part of an annotation, or any part of it, sets to a number."""
+    for bound in LIMITS.values():
+        if hasattr(part, bound):
+            yield bound, getattr(part, bound)
+    inner = (getattr(part, "annotation", None), *getattr(part, "metadata", ()), *get_args(part))
+    for each in inner:
+        if each is not None:
+            yield from _ends(each)
 
 
 def _meaning(key: str, models: list[Table]) -> str:

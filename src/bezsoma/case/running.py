@@ -11,13 +11,16 @@ from typing import Any
 import numpy as np
 
 from bezsoma.arrays import Floats
+from bezsoma.case.advice import in_case
 from bezsoma.case.build import body_of
 from bezsoma.case.expectations import checked, motions, probe_points
 from bezsoma.case.quantities import Measured
-from bezsoma.case.reading import Case
+from bezsoma.case.reading import Case, read_case
 from bezsoma.case.sources import mesh_of
 from bezsoma.case.writing import write_results
+from bezsoma.errors import InputError
 from bezsoma.mechanics.body import Body
+from bezsoma.mesh.nouns import described, path_given
 from bezsoma.mesh.tets import TetMesh
 from bezsoma.results import Results, destination
 from bezsoma.results.archive import NOTICE
@@ -49,7 +52,7 @@ def silent(stage: str, fraction: float | None, note: str) -> None:
 
 
 def run_case(
-    case: Case,
+    case: Case | Path | str,
     folder: Path | str,
     *,
     overwrite: bool = False,
@@ -58,11 +61,12 @@ def run_case(
 ) -> Results:
     """Solve a case and leave its results folder, whole or not at all; gives what it holds.
 
-    `degree` takes the place of the one in the file. The folder is looked at first, then the mesh,
-    names, probes and expectations; only then is anything solved. Whether the expectations were
-    met stands in `summary["expectations"]`.
+    `case` is one that was read, or the path of its file. `degree` takes the place of the one in
+    the file. The folder is looked at first, then the mesh, names, probes and expectations; only
+    then is anything solved. Whether the expectations were met stands in `summary["expectations"]`.
     """
-    place = destination(folder, overwrite=overwrite)
+    case = _case(case)
+    place = destination(path_given(folder, "run_case(case, folder)"), overwrite=overwrite)
     start = perf_counter()
     progress("mesh", None, "reading the mesh and checking the case")
     mesh = mesh_of(case)
@@ -70,14 +74,27 @@ def run_case(
     body = body_of(case, mesh, case.file.degree if degree is None else degree)
     place.check_room(_size(body))
     table = case.file.solver
-    solution = solve(
-        body, solver=table.method, rtol=table.rtol, threads=table.threads, progress=progress
-    )
+    with in_case(case.path.name):
+        solution = solve(
+            body, solver=table.method, rtol=table.rtol, threads=table.threads, progress=progress
+        )
     summary = summary_of(case, solution, probes)
     summary["seconds"] = perf_counter() - start
     with place.filling() as partial:
         write_results(partial, case, solution, summary, progress)
     return Results(place.folder, mesh, solution.displacement, summary, case.text)
+
+
+def _case(given: Any) -> Case:
+    """The case itself, read if a path was given."""
+    if isinstance(given, Case):
+        return given
+    if isinstance(given, str | Path):
+        return read_case(given)
+    raise InputError(
+        f"run_case(case, folder): {described(given)} cannot be the case; give read_case(path), or "
+        "the path of a case file"
+    )
 
 
 def summary_of(case: Case, solution: Solution, probes: dict[str, Floats]) -> dict[str, Any]:

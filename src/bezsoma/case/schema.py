@@ -7,7 +7,7 @@ Each key's description is what the message says where the key is missing.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import (
     AfterValidator,
@@ -98,7 +98,16 @@ Vertex = Annotated[
     Annotated[Name, Tag("text")] | Annotated[Point, Tag("list")], Discriminator(_place_shape)
 ]
 Views = Annotated[tuple[Annotated[str, AfterValidator(_view)], ...], BeforeValidator(_names)]
-Components = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
+Letters = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
+
+
+def _ordered(value: Any) -> Any:
+    """Components may stand in any order, as "zx" in Python; what is none of them stays as it is."""
+    ordered = "".join(sorted(value)) if isinstance(value, str) else value
+    return ordered if ordered in get_args(Letters) else value
+
+
+Components = Annotated[Letters, BeforeValidator(_ordered)]
 
 
 class Table(BaseModel):

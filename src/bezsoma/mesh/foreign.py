@@ -50,11 +50,12 @@ def _straight(kinds: set[str]) -> None:
     other = sorted(kinds - KINDS.keys())
     if other:
         curved = [kind for kind in other if kind.rstrip("0123456789") in KINDS]
-        advice = (
-            "save the mesh with straight cells (order 1)"
-            if len(curved) == len(other)
-            else "split them into tets where the mesh is made"
-        )
+        if any(kind.startswith("VTK_LAGRANGE") for kind in other):
+            advice = "where BezSoma wrote the file (displacement.vtu), read mesh.npz beside it"
+        elif len(curved) == len(other):
+            advice = "save the mesh with straight cells (order 1)"
+        else:
+            advice = "split them into tets where the mesh is made"
         raise MeshError(f"it has cells of the kinds {other}; straight tets are read: {advice}")
     if "tetra" not in kinds:
         raise MeshError(

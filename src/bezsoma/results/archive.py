@@ -9,7 +9,6 @@ never through text.
 from __future__ import annotations
 
 import json
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -69,8 +68,16 @@ def read_results(folder: Path | str) -> Results:
                 "again"
             )
     mesh = read_mesh(folder / MESH)
-    text = (folder / CASE).read_bytes().decode("utf-8")
-    return Results(folder, mesh, _displacement(folder / DISPLACEMENT, mesh), summary, text)
+    displacement = _displacement(folder / DISPLACEMENT, mesh)
+    return Results(folder, mesh, displacement, summary, _text(folder / CASE))
+
+
+def _text(path: Path) -> str:
+    """The text of the case that ran."""
+    try:
+        return path.read_bytes().decode("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{str(path)!r} is damaged ({error}); run the case again") from error
 
 
 def _summary(folder: Path) -> dict[str, Any]:
@@ -85,7 +92,7 @@ def _summary(folder: Path) -> dict[str, Any]:
             f"no results in {str(folder)!r}: it has no {SUMMARY!r}; give the folder that "
             "`bezsoma run` wrote"
         ) from None
-    except ValueError as error:
+    except (OSError, ValueError) as error:
         raise InputError(f"{str(folder / SUMMARY)!r} is damaged: {error}") from None
     given = summary.get("format") if isinstance(summary, dict) else None
     if given != FORMAT:
@@ -103,8 +110,8 @@ def _displacement(path: Path, mesh: TetMesh) -> Field:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             degree, of_tet = int(stored["degree"]), stored["of_tet"]
             controls = stored["controls"]
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(f"{str(path)!r} is damaged ({error}); run the case again") from None
+    except Exception as error:  # zip, zlib and NumPy each have their own ways to fail
+        raise InputError(f"{str(path)!r} is damaged ({error}); run the case again") from error
     net = ControlNet(mesh, degree)
     numbered = np.array_equal(np.unique(of_tet), np.arange(net.count))
     if not numbered or of_tet.shape != net.of_tet.shape or controls.shape != (net.count, 3):
