@@ -44,7 +44,7 @@ def in_pieces(mesh: TetMesh) -> TetMesh:
 
 
 def body(mesh: TetMesh, field: PolynomialField, degree: int, law: bz.LinearElastic) -> bz.Body:
-    """A third of the facets prescribed, some of them in one component; exact tractions elsewhere.
+    """Of four facets one prescribed, one in its z component only; exact tractions elsewhere.
 
     On a facet with its z component prescribed the traction acts in all components: what it does
     to z goes into the reaction and must not show.

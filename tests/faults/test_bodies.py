@@ -214,12 +214,32 @@ SUPPORTS: dict[str, tuple[Given, tuple[str, ...]]] = {
         ("translation of Moved, mm", "(0, -5)", "3 numbers"),
     ),
     "an axis that points nowhere": (
-        lambda: Moved("jaw", axis=(0, 0, 0), angle=0.1),
+        lambda: Moved("jaw", axis=(0, 0, 0), angle=0.1, about=(0, 0, 0)),
         ("axis of Moved", "length 0", "(0, 0, 1)"),
     ),
     "degrees for radians": (
         lambda: Moved("jaw", angle=30),
         ("30 rad", "radians", "angle=0.523599"),
+    ),
+    "a turn about nothing": (
+        lambda: Moved("jaw", angle=0.1),
+        ("'jaw' turns by 0.1 rad", "no axis and no about", "about=(0, 10, 0)"),
+    ),
+    "a turn about no point": (
+        lambda: Moved("jaw", angle=0.1, axis=(1, 0, 0)),
+        ("no about is given", "a point in mm"),
+    ),
+    "a turn about no axis": (
+        lambda: Moved("jaw", angle=0.1, about=(1, 0, 0)),
+        ("no axis is given", "direction"),
+    ),
+    "a motion without any": (
+        lambda: Moved("jaw", "rami"),
+        ("neither a translation (mm) nor an angle (rad)", "say Fixed('jaw', 'rami')"),
+    ),
+    "an axis and no angle": (
+        lambda: Moved("jaw", axis=(1, 0, 0), about=(0, 1, 0)),
+        ("nor an angle (rad)", "say how it moves"),
     ),
     "an angle that is not finite": (lambda: Moved("jaw", angle=np.inf), ("angle", "finite")),
     "an unknown place": (
@@ -470,12 +490,12 @@ FINE: dict[str, Given] = {
             Fixed("top", components="z"),
         ]
     ),
-    "the same value twice": lambda: equations([Fixed("jaw"), Moved("rami", "jaw")]),
+    "the same value twice": lambda: equations([Fixed("jaw"), Moved("rami", "jaw", angle=0)]),
     "a jump in no common component": lambda: equations(
         [Fixed("rami", components="x"), Moved("jaw", translation=(0, 5, 0), components="yz")]
     ),
     "a jump of nothing graded": lambda: equations(
-        [Fixed("rami"), Moved("jaw")], joins=[Graded("rami", "jaw", 2)]
+        [Fixed("rami"), Moved("jaw", translation=(0, 0, 0))], joins=[Graded("rami", "jaw", 2)]
     ),
     "a support and a traction on one surface": lambda: equations(
         [Fixed("top", components="z")], [Traction("top", value=(1, 0, 1))]
@@ -484,7 +504,7 @@ FINE: dict[str, Given] = {
         MESH, 2, {"muscle": TISSUE, "fat": TISSUE}, (Fixed("jaw"),)
     ),
     "a traction inside the body": lambda: equations((), [Traction("inside", value=(0, 0, 1))]),
-    "a full turn": lambda: Moved("jaw", angle=-2 * np.pi),
+    "a full turn": lambda: Moved("jaw", axis=(0, 0, 1), angle=-2 * np.pi, about=(0, 0, 0)),
     "a pressure as a column": lambda: equations((), [Pressure("top", value=lambda x: x[:, :1])]),
 }
 

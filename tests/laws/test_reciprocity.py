@@ -120,7 +120,7 @@ def test_superposition(degree: int) -> None:
     "supports",
     [
         (bz.Fixed("left"),),
-        (bz.Fixed("left"), bz.Moved("right", axis=(1, 1, 0), angle=0.1)),
+        (bz.Fixed("left"), bz.Moved("right", axis=(1, 1, 0), angle=0.1, about=(0, 0, 0))),
         (bz.Fixed("left"), bz.Fixed("bottom"), bz.Fixed("front", components="y")),
     ],
     ids=["one support", "two", "three that meet"],

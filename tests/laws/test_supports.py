@@ -149,7 +149,7 @@ def test_the_same_value_twice_is_no_disagreement(degree: int) -> None:
     mesh = block(origin=tuple(FAR))
     turn = Rotation.from_rotvec([0, 0, 0.1]).as_matrix() - np.eye(3)
     supports = [
-        Moved("top", angle=0.1, about=FAR),
+        Moved("top", axis=(0, 0, 1), angle=0.1, about=FAR),
         Prescribed("right", value=Polynomial.affine(turn, about=FAR)),
         Prescribed("front", value=lambda x: (x - FAR) @ turn.T),
     ]
@@ -307,10 +307,34 @@ def test_distances_to_a_polyline_are_exact() -> None:
 
 
 def test_a_tiny_turn_keeps_its_digits_and_half_a_turn_is_one() -> None:
-    tiny = Moved("a", angle=1e-9).displacement(np.array([[1.0, 0, 0]]))
+    origin, upwards = (0, 0, 0), (0, 0, 1)
+    turned = Moved("a", axis=upwards, angle=1e-9, about=origin)
+    tiny = turned.displacement(np.array([[1.0, 0, 0]]))
     assert tiny[0, 1] == pytest.approx(1e-9, rel=1e-15)
-    half = Moved("a", axis=(0, 0, 5), angle=np.pi).displacement(np.array([[1.0, 2, 3]]))
+    turned = Moved("a", axis=(0, 0, 5), angle=np.pi, about=origin)
+    half = turned.displacement(np.array([[1.0, 2, 3]]))
     assert np.allclose(half, [[-2, -4, 0]], atol=1e-15)
+
+
+def test_no_motion_may_be_said_in_numbers() -> None:
+    """A row of trials begins with zero; only a motion without any number is refused."""
+    points = np.array([[1.0, 2, 3]])
+    for still in (Moved("a", translation=(0, 0, 0)), Moved("a", angle=0)):
+        assert not still.displacement(points).any()
+
+
+def test_a_support_shows_itself_as_it_was_called() -> None:
+    def swell(x: np.ndarray) -> np.ndarray:
+        return x
+
+    turn = Moved("jaw", axis=(1, 0, 0), angle=0.5, about=(0, 9, 0), components="yz")
+    assert repr(Fixed("a", "b")) == "Fixed('a', 'b')"
+    assert repr(Moved("a", translation=(0, -5, 0))) == "Moved('a', translation=(0.0, -5.0, 0.0))"
+    assert repr(turn) == (
+        "Moved('jaw', translation=(0.0, 0.0, 0.0), axis=(1.0, 0.0, 0.0), angle=0.5, "
+        "about=(0.0, 9.0, 0.0), components='yz')"
+    )
+    assert repr(Prescribed("a", value=swell)) == "Prescribed('a', value=<function swell>)"
 
 
 def test_the_examples_of_the_theory_page_run(root: Path) -> None:

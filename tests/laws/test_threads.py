@@ -43,7 +43,7 @@ def moved(degree: int, cells: tuple[int, int, int]) -> Body:
     """A body of two materials, its left side held, the right one moved and turned."""
     supports = [
         Fixed("left"),
-        Moved("right", translation=(0.02, 0.1, 0), axis=(1, 0, 0), angle=0.1),
+        Moved("right", translation=(0.02, 0.1, 0), axis=(1, 0, 0), angle=0.1, about=(0, 0, 0)),
         Fixed("front", components="y"),
     ]
     joins = [Precedence(side, over="front") for side in ("left", "right")]

@@ -225,6 +225,24 @@ def test_degrees_that_cannot_be_written_are_refused(tmp_path: Path, degree: Any)
         write_vtu(tmp_path / "a.vtu", block(), {}, degree)
 
 
+def test_a_field_alone_gets_a_name(tmp_path: Path) -> None:
+    mesh = block()
+    net = ControlNet(mesh, 1)
+    alone: dict[str, Any] = {
+        "displacement": field_of(mesh, 2),
+        "field": BrokenField(mesh, 0, np.arange(6.0)[:, None]),
+    }
+    for name, field in alone.items():
+        found = arrays(write_vtu(tmp_path / f"{name}.vtu", mesh, field))
+        named = arrays(write_vtu(tmp_path / f"{name} named.vtu", mesh, {name: field}))
+        assert np.array_equal(found[name], named[name])
+    scalar = write_surface_vtu(tmp_path / "s.vtu", mesh, Field(net, np.ones(net.count)))
+    assert np.allclose(arrays(scalar)["field"], 1)
+    assert set(arrays(write_vtu(tmp_path / "m.vtu", mesh))) == set(
+        arrays(write_vtu(tmp_path / "none.vtu", mesh, {}))
+    )
+
+
 def test_a_field_of_another_mesh_is_refused(tmp_path: Path) -> None:
     other = field_of(block(cells=(2, 1, 1)), 1)
     with pytest.raises(InputError, match=r"'u' lives on another mesh \(12 tets"):

@@ -32,6 +32,9 @@ SOLVERS, CORE = "src/bezsoma/solvers", "src/core"
 ELEMENT = ("tests/laws/test_element.py", "tests/paper/test_equations.py")
 ASSEMBLED = ("tests/laws/test_assembled.py", "tests/paper/test_equations.py")
 CHOLESKY = ("tests/laws/test_cholesky.py",)
+MATRIX_FREE = ("tests/laws/test_matrix_free.py",)
+MULTIGRID = ("tests/laws/test_multigrid.py",)
+HARD = ("tests/faults/test_hard_problems.py",)
 LOADS = ("tests/laws/test_loads.py", "tests/paper/test_equations.py")
 SOLVES = ("src/bezsoma/equations", "src/bezsoma/solvers", "tests/paper/test_equations.py")
 
@@ -136,9 +139,9 @@ PYTHON = (
     ),
     Mutant(
         "twice the stored energy",
-        f"{EQUATIONS}/stress.py",
-        'np.einsum("tak,tak->t", np.matmul(mass, tau), eps) / 2',
-        'np.einsum("tak,tak->t", np.matmul(mass, tau), eps)',
+        f"{EQUATIONS}/matrix_free.py",
+        "self.kernel.work(np.ascontiguousarray(x)) / 2",
+        "self.kernel.work(np.ascontiguousarray(x))",
         SOLVES,
     ),
     Mutant(
@@ -196,6 +199,48 @@ PYTHON = (
         "angle=radians(table.degrees)",
         "angle=table.degrees",
         ("tests/cases/test_block.py",),
+    ),
+    Mutant(
+        "the tets of an operator in the order of the file in place of the walk's",
+        f"{EQUATIONS}/matrix_free.py",
+        "net.starts[dim][entities[net.morton]].astype(np.int32)",
+        "net.starts[dim][entities].astype(np.int32)",
+        MATRIX_FREE,
+    ),
+    Mutant(
+        "supports that degree 1 does not see",
+        f"{SOLVERS}/multigrid.py",
+        "held_vertices[vertices.starts[0]] = held[net.starts[0]]",
+        "held_vertices[vertices.starts[0]] = False",
+        MULTIGRID,
+    ),
+    Mutant(
+        "rigid motions about places of the wrong vertices",
+        f"{SOLVERS}/multigrid.py",
+        "places[vertices.starts[0]] = net.mesh.points",
+        "places[:] = net.mesh.points",
+        MULTIGRID,
+    ),
+    Mutant(
+        "the residual of the recurrence told in place of the true one",
+        f"{SOLVERS}/multigrid.py",
+        "history[-1] = residual",
+        "history[-1] = min(residual, rtol / 2)",
+        MULTIGRID,
+    ),
+    Mutant(
+        "a problem twice as large as the memory let through",
+        f"{SOLVERS}/memory.py",
+        "needed > there:",
+        "needed > 2 * there:",
+        ("tests/laws/test_memory.py::test_what_fits_just_so_is_not_refused",),
+    ),
+    Mutant(
+        "a number of threads in the environment that goes unheard",
+        f"{SOLVERS}/solve.py",
+        'os.environ.get("BEZSOMA_THREADS", "0") if asked is None else asked',
+        "0 if asked is None else asked",
+        ("tests/laws/test_threads.py::test_the_environment_is_heard_and_the_argument_before_it",),
     ),
 )
 
@@ -269,6 +314,83 @@ CPP = (
         "held_i[r] || held_k[c] ? 0.0",
         "held_i[r] && held_k[c] ? 0.0",
         CHOLESKY,
+    ),
+    Mutant(
+        "what other chunks add to a chunk's controls is dropped",
+        f"{CORE}/elastic_operator.cpp",
+        "to[i] += from[i];",
+        "to[i] += 0 * from[i];",
+        MATRIX_FREE,
+    ),
+    Mutant(
+        "a lane that reads its neighbour's controls",
+        f"{CORE}/elastic_kernel.hpp",
+        "std::int64_t{first[entity * lanes + l]} + begin);",
+        "std::int64_t{first[entity * lanes + l / 2]} + begin);",
+        MATRIX_FREE,
+    ),
+    Mutant(
+        "a rung of the ladder that forgets one of four neighbours",
+        f"{CORE}/elastic_kernel.hpp",
+        "lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]);",
+        "lower[p] = (y[p] + y[p1]) + y[p2];",
+        MATRIX_FREE,
+    ),
+    Mutant(
+        "the ladder's factors with one binomial in place of its square",
+        f"{CORE}/elastic_kernel.hpp",
+        "1.0 * combinations(m, j) * combinations(m, j)",
+        "1.0 * combinations(m, j)",
+        MATRIX_FREE,
+    ),
+    Mutant(
+        "several sides that all take the material of a batch's first tet",
+        f"{CORE}/kernels_isa.cpp",
+        "tet.mu = R{} + b.lame[2 * b.region[i * lanes + lane] + 1];",
+        "tet.mu = R{} + b.lame[2 * b.region[i * lanes] + 1];",
+        MATRIX_FREE,
+    ),
+    Mutant(
+        "a block that forgets half of its symmetry",
+        f"{CORE}/block_kernel.hpp",
+        "y[column] += entry * x[row];",
+        "y[column] += 0 * entry * x[row];",
+        MULTIGRID,
+    ),
+    Mutant(
+        "lambda and mu exchanged in the blocks of entities",
+        f"{CORE}/entity_blocks.cpp",
+        "lambda * g[i][k] * g[j][l] + mu * g[j][k] * g[i][l]",
+        "mu * g[i][k] * g[j][l] + lambda * g[j][k] * g[i][l]",
+        MULTIGRID,
+    ),
+    Mutant(
+        "a rigid motion that aggregation misses",
+        f"{CORE}/prolongation.cpp",
+        "x[i * motions + k] *= kept ? 1 / length : 0;",
+        "x[i * motions + k] *= kept && k != 5 ? 1 / length : 0;",
+        MULTIGRID,
+    ),
+    Mutant(
+        "a sweep back that is not the adjoint of the one before",
+        f"{CORE}/sweeps.cpp",
+        "for (std::size_t i = end; i-- > begin;) {",
+        "for (std::size_t i = begin; i < end; ++i) {",
+        MULTIGRID,
+    ),
+    Mutant(
+        "convergence believed without forming the true residual",
+        f"{CORE}/conjugate_gradients.cpp",
+        "found.converged = norm <= rtol * reference * (1 + 1e-6);",
+        "found.converged = true;",
+        HARD,
+    ),
+    Mutant(
+        "chunks that depend on the number of threads",
+        f"{CORE}/elastic_operator.cpp",
+        "std::clamp(expected_controls(tets) / shares,",
+        "std::clamp(most_controls / std::int64_t(team.size()),",
+        ("tests/laws/test_threads.py::test_a_whole_solve_has_the_same_bits",),
     ),
 )
 

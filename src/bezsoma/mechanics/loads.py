@@ -12,7 +12,7 @@ import numpy as np
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError, unknown
 from bezsoma.mechanics.checks import names, numbers
-from bezsoma.mechanics.values import Given, Value, given
+from bezsoma.mechanics.values import Given, Value, as_called, given
 from bezsoma.mesh.tets import TetMesh
 from bezsoma.mesh.topology import numbers as row_numbers
 
@@ -42,6 +42,9 @@ class Traction:
         object.__setattr__(self, "value", given(value, 3, what))
         object.__setattr__(self, "exactness", exactness_checked(exactness, "Traction"))
 
+    def __repr__(self) -> str:
+        return as_called("Traction", *self.surfaces, value=self.value, exactness=self.exactness)
+
 
 @dataclass(frozen=True, init=False, eq=False)
 class Pressure:
@@ -63,6 +66,9 @@ class Pressure:
         what = f"the pressure on {', '.join(map(repr, surfaces))}, MPa"
         object.__setattr__(self, "value", given(value, 1, what))
         object.__setattr__(self, "exactness", exactness_checked(exactness, "Pressure"))
+
+    def __repr__(self) -> str:
+        return as_called("Pressure", *self.surfaces, value=self.value, exactness=self.exactness)
 
 
 @dataclass(frozen=True, init=False, eq=False)

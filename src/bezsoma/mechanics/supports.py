@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol, runtime_checkable
 
@@ -12,7 +13,7 @@ import numpy.typing as npt
 from bezsoma.arrays import Bools, Floats, frozen
 from bezsoma.errors import InputError
 from bezsoma.mechanics.checks import names, number, numbers
-from bezsoma.mechanics.values import Given, Value, given
+from bezsoma.mechanics.values import Given, Value, as_called, given
 
 
 @runtime_checkable
@@ -58,6 +59,9 @@ class Fixed:
         object.__setattr__(self, "places", names(places, "Fixed"))
         object.__setattr__(self, "components", axes(components, "Fixed"))
 
+    def __repr__(self) -> str:
+        return as_called("Fixed", *self.places, components=partly(self.components))
+
     @property
     def degree(self) -> int:
         """0: a constant."""
@@ -75,7 +79,8 @@ class Moved:
     u(x) = (R - I)(x - about) + translation, with R the true rotation (not the small-angle one,
     which stretches a jaw opened by 20 degrees by 6 %); counter-clockwise seen against the axis.
     Linear tissue then follows prescribed data that are exact, its own law stays one of small
-    strain.
+    strain. A turn needs its axis and a point `about` which it goes: a forgotten one would be a turn
+    about the corner of the scan. What does not move is `Fixed`.
 
     >>> quarter = Moved("jaw", axis=(0, 0, 1), angle=np.pi / 2, about=(1, 0, 0))
     >>> moved = np.array([[2.0, 0, 0]]) + quarter.displacement(np.array([[2.0, 0, 0]]))
@@ -94,23 +99,32 @@ class Moved:
     def __init__(
         self,
         *places: str,
-        translation: npt.ArrayLike = (0, 0, 0),
-        axis: npt.ArrayLike = (0, 0, 1),
-        angle: float = 0.0,
-        about: npt.ArrayLike = (0, 0, 0),
+        translation: npt.ArrayLike | None = None,
+        axis: npt.ArrayLike | None = None,
+        angle: float | None = None,
+        about: npt.ArrayLike | None = None,
         components: str = "xyz",
     ) -> None:
+        given = {"translation": translation, "axis": axis, "angle": angle, "about": about}
+        stated = {name: value for name, value in given.items() if value is not None}
         own: dict[str, Any] = {
             "places": names(places, "Moved"),
-            "translation": numbers(translation, (3,), "the translation of Moved, mm"),
-            "axis": numbers(axis, (3,), "the axis of Moved"),
-            "angle": radians(angle),
-            "about": numbers(about, (3,), "the point `about` of Moved, mm"),
             "components": axes(components, "Moved"),
+            "angle": radians(stated.get("angle", 0.0)),
+            "translation": _triple(stated, "translation", (0, 0, 0), "of Moved, mm"),
+            "axis": _triple(stated, "axis", (0, 0, 1), "of Moved"),
+            "about": _triple(stated, "about", (0, 0, 0), "of Moved, a point in mm,"),
         }
+        _motion_stated(own["places"], own["angle"], stated)
         own["_minus_identity"] = rotation_minus_identity(own["axis"], own["angle"])
         for name, value in own.items():
             object.__setattr__(self, name, value)
+
+    def __repr__(self) -> str:
+        turn = {"axis": self.axis, "angle": self.angle, "about": self.about} if self.angle else {}
+        components = partly(self.components)
+        shift = self.translation
+        return as_called("Moved", *self.places, translation=shift, **turn, components=components)
 
     @property
     def degree(self) -> int:
@@ -147,6 +161,10 @@ class Prescribed:
         object.__setattr__(self, "value", given(value, 3, what))
         object.__setattr__(self, "components", axes(components, "Prescribed"))
 
+    def __repr__(self) -> str:
+        components = partly(self.components)
+        return as_called("Prescribed", *self.places, value=self.value, components=components)
+
     @property
     def degree(self) -> int | None:
         """The degree of the polynomial, or None for a function."""
@@ -155,6 +173,32 @@ class Prescribed:
     def displacement(self, points: Floats) -> Floats:
         """The prescribed values (p, 3) mm at points (p, 3) mm."""
         return self.value(points)
+
+
+def _triple(stated: Mapping[str, Any], name: str, default: Any, of: str) -> Floats:
+    return numbers(stated.get(name, default), (3,), f"the {name} {of}")
+
+
+def _motion_stated(places: tuple[str, ...], angle: float, stated: Mapping[str, Any]) -> None:
+    """Refuses a motion that is none, and a turn about a line that nobody gave."""
+    on = ", ".join(map(repr, places))
+    if "translation" not in stated and "angle" not in stated:
+        raise InputError(
+            f"Moved on {on} has neither a translation (mm) nor an angle (rad), so nothing moves; "
+            f"say how it moves, or say Fixed({on})"
+        )
+    missing = [name for name in ("axis", "about") if name not in stated]
+    if angle and missing:
+        raise InputError(
+            f"Moved on {on} turns by {angle:g} rad, and no {' and no '.join(missing)} is given; a "
+            "turn needs the direction of its axis and a point in mm which it goes about, such as "
+            "axis=(1, 0, 0), about=(0, 10, 0)"
+        )
+
+
+def partly(components: str) -> str | None:
+    """The components, or None where they are all: what a repr need not say."""
+    return None if components == "xyz" else components
 
 
 def axes(components: Any, of: str) -> str:

@@ -31,6 +31,14 @@ class Given:
     degree: int | None
     what: str
 
+    def __repr__(self) -> str:
+        if self.degree == 0:
+            constant = self(np.zeros((1, 3)))[0].tolist()
+            return repr(constant[0] if self.size == 1 else tuple(constant))
+        name = getattr(self.function, "__qualname__", "") or type(self.function).__name__
+        known = isinstance(self.function, Polynomial)
+        return repr(self.function) if known else f"<function {name.split('.')[-1]}>"
+
     def __call__(self, points: Floats) -> Floats:
         """Values (p, size) at points (p, 3) mm; the answer of a Python function is checked."""
         if self.degree is not None:
@@ -57,6 +65,22 @@ def given(value: Any, size: int, what: str) -> Given:
         return Given(value, size, None, what)
     constant = numbers(value, (size,) if size > 1 else (), what).reshape(size)
     return Given(lambda points: np.tile(constant, (len(points), 1)), size, 0, what)
+
+
+def as_called(kind: str, *places: str, **stated: Any) -> str:
+    """The call that makes a support or a load, what was left out left out.
+
+    >>> as_called("Traction", "top", value=given((0, 0, 1), 3, "a traction"), exactness=None)
+    "Traction('top', value=(0.0, 0.0, 1.0))"
+    >>> as_called("Pressure", "top", value=given(np.sin, 1, "a pressure"))
+    "Pressure('top', value=<function sin>)"
+    """
+    named = (f"{name}={_plain(value)!r}" for name, value in stated.items() if value is not None)
+    return f"{kind}({', '.join([*map(repr, places), *named])})"
+
+
+def _plain(value: Any) -> Any:
+    return tuple(value.tolist()) if isinstance(value, np.ndarray) else value
 
 
 def _answer(answer: Any, points: Floats, value: Given) -> Floats:

@@ -9,7 +9,7 @@ a stress), and a gradient adds one axis of length 3 at the end: the direction of
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
@@ -117,8 +117,7 @@ def located(mesh: TetMesh, points: Floats, outside: Outside) -> tuple[Ints, Floa
     """The tets (p,) and barycentric coordinates (p, 4) of points, by the rule for those outside."""
     if outside not in ("raise", "nearest", "nan"):
         raise InputError(f"outside={outside!r} is not known; give 'raise', 'nearest' or 'nan'")
-    locator = Locator(mesh)
-    points = np.asarray(points, dtype=np.float64)
+    points, locator = _points(points), Locator(mesh)
     tets, bary = locator.tets_of(points)
     lost = np.flatnonzero(tets < 0)
     if len(lost) and outside == "raise":
@@ -132,6 +131,22 @@ def located(mesh: TetMesh, points: Floats, outside: Outside) -> tuple[Ints, Floa
     if len(lost) and outside == "nearest":
         tets[lost], bary[lost] = locator.in_tets(locator.nearest(points[lost]))
     return tets, bary
+
+
+def _points(given: Any) -> Floats:
+    """The points (p, 3) as numbers; that they are finite is for the locator to say."""
+    try:
+        points = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        shown = repr(given)
+        raise InputError(
+            f"{shown if len(shown) <= 60 else shown[:60] + '...'} are no points; give numbers "
+            "(p, 3) in mm, such as [[0, 0, 0]]"
+        ) from None
+    if points.ndim != 2 or points.shape[1] != 3:
+        one = "; one point is [[x, y, z]]" if points.shape == (3,) else ""
+        raise InputError(f"points of shape {points.shape} were given; (p, 3) in mm is needed{one}")
+    return points
 
 
 def integral(field: TetPolynomials) -> Floats:

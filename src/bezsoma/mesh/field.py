@@ -41,7 +41,18 @@ class Field:
     controls: Floats
 
     def __post_init__(self) -> None:
-        controls = np.asarray(self.controls, dtype=np.float64)
+        if not isinstance(self.net, ControlNet):
+            raise InputError(
+                f"Field(net, controls): a {type(self.net).__name__} cannot be the net; give "
+                "ControlNet(mesh, degree)"
+            )
+        try:
+            controls = np.asarray(self.controls, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(
+                f"Field(net, controls): a {type(self.controls).__name__} that is no array of "
+                "numbers cannot be the controls; Field.interpolating takes functions"
+            ) from None
         if controls.shape[:1] != (self.net.count,):
             raise InputError(
                 f"controls of shape {controls.shape} were given; the net of degree "

@@ -22,6 +22,7 @@ import numpy as np
 from bezsoma.errors import InputError, MeshError
 from bezsoma.mesh.abaqus import read_abaqus, write_abaqus
 from bezsoma.mesh.foreign import grouped, listing_of, masked
+from bezsoma.mesh.nouns import mesh_given, path_given
 from bezsoma.mesh.npz import read_npz, write_npz
 from bezsoma.mesh.tagged import Listing, mesh_of
 from bezsoma.mesh.tets import TetMesh
@@ -65,7 +66,7 @@ def read_mesh(
     Triangles, lines and points without a tag or a set are left out; cells other than those and
     straight tets are refused. Points of no tet are dropped (`TetMesh.dropped` counts them).
     """
-    place = _existing(path)
+    place = _existing(path_given(path, "read_mesh(path)"))
     try:
         if place.suffix.lower() == ".npz":
             return read_npz(place, surfaces, regions)
@@ -84,7 +85,8 @@ def write_mesh(path: str | os.PathLike[str], mesh: TetMesh, *, overwrite: bool =
 
     The file appears whole or not at all. One that is there is refused unless `overwrite`.
     """
-    place = Path(path)
+    call = "write_mesh(path, mesh)"
+    place, mesh = path_given(path, call), mesh_given(mesh, call)
     suffix = place.suffix.lower()
     if suffix not in WRITTEN:
         raise InputError(

@@ -26,7 +26,14 @@ def sampled(function: Function | Floats, points: Floats) -> Floats:
     has to count the points
     """
     given = function(points) if callable(function) else function
-    values = np.asarray(given, dtype=np.float64)
+    try:
+        values = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{'the function gave' if callable(function) else 'there stands'} a "
+            f"{type(given).__name__} that is no array of numbers; {len(points)} values are needed, "
+            "one for each point, or a function that gives them at points (p, 3) in mm"
+        ) from None
     if values.shape[:1] != (len(points),):
         raise InputError(
             f"{'the function gave' if callable(function) else 'there are'} values of shape "

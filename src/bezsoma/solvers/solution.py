@@ -55,6 +55,13 @@ class Solution:
     free: int
     timings: Mapping[str, float]
 
+    def __repr__(self) -> str:
+        return (
+            f"Solution(degree={self.net.degree}, unknowns={3 * self.net.count}, "
+            f"method={self.method!r}, energy={self.energy:.6g} N mm, "
+            f"largest_displacement={self.largest_displacement:.6g} mm)"
+        )
+
     @property
     def net(self) -> ControlNet:
         """The control net."""

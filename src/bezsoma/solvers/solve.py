@@ -153,7 +153,7 @@ def _threads(asked: int | None) -> int:
     given = os.environ.get("BEZSOMA_THREADS", "0") if asked is None else asked
     try:
         number = int(given)
-    except ValueError:
+    except (TypeError, ValueError):
         number = -1
     if isinstance(given, bool | float) or not 0 <= number <= MOST_THREADS:
         where = "BEZSOMA_THREADS" if asked is None else "threads"

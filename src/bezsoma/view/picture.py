@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError
 from bezsoma.mesh import Field, TetMesh
+from bezsoma.mesh.nouns import field_given, mesh_given, path_given
 from bezsoma.view.camera import axes, fitted
 from bezsoma.view.layout import Layout, sheet_size
 from bezsoma.view.light import CLAY, REST, SKIN
@@ -61,6 +63,8 @@ def picture(
     with the unit. `limits` default to the range on the surface. `displacement` in mm moves the
     surface, `magnified` times, which the caption then says.
     """
+    call = "picture(path, mesh, colour, displacement=)"
+    _checked(call, path, mesh, (colour, "the colour"), (displacement, "the displacement"))
     subject = Subject.of(mesh, surface, rest, displacement, magnified)
     layout = Layout(_size(size), 1, 1, bool(title), colour is not None)
     camera = fitted(view, subject.points(), layout.panel)
@@ -103,6 +107,9 @@ def face_picture(
     boundary. All panels have one scale but the outlines, which are seen from `profile`. Without
     `size` the sheet is 1600 pixels wide and as high as suits what it shows.
     """
+    call = "face_picture(path, mesh, displacement)"
+    _checked(call, path, mesh)
+    field_given(displacement, call, "the displacement")
     chosen = "skin" if surface is None and "skin" in mesh.surfaces else surface
     subject = Subject.of(mesh, chosen, rest, displacement, 1.0)
     points = subject.points()
@@ -135,6 +142,16 @@ def face_picture(
     if path is not None:
         written(path, content, overwrite)
     return content
+
+
+def _checked(call: str, path: Any, mesh: Any, *fields: tuple[Any, str]) -> None:
+    """Refuses what is no path, mesh or field; no path and no field are fine."""
+    if path is not None:
+        path_given(path, call)
+    mesh_given(mesh, call)
+    for field, what in fields:
+        if field is not None:
+            field_given(field, call, what)
 
 
 def _profile(

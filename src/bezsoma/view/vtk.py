@@ -23,7 +23,8 @@ from bezsoma import __version__
 from bezsoma.arrays import Floats, Ints, Numbers
 from bezsoma.bernstein import domain_points
 from bezsoma.errors import InputError
-from bezsoma.mesh import ControlNet, Field, TetMesh
+from bezsoma.mesh import BrokenField, ControlNet, Field, TetMesh
+from bezsoma.mesh.nouns import described, field_given, mesh_given, path_given
 from bezsoma.view.lagrange import vtk_order
 from bezsoma.view.lattice import shared_points
 from bezsoma.view.restriction import (
@@ -61,7 +62,7 @@ class _Grid:
 def write_vtu(
     path: str | Path,
     mesh: TetMesh,
-    fields: Mapping[str, AnyField],
+    fields: Mapping[str, AnyField] | AnyField | None = None,
     degree: int | None = None,
     *,
     overwrite: bool = False,
@@ -69,6 +70,8 @@ def write_vtu(
 ) -> Path:
     """Writes the mesh and fields on it as a VTU file of Lagrange tetrahedra; gives the path.
 
+    `fields` are named: {"displacement": u, "stress": s}. A field alone is taken too: a `Field` of
+    three components is called "displacement", any other "field"; with None there is only the mesh.
     The degree is the largest of the fields' unless stated; a smaller one than a field's means
     that the field is interpolated. Continuous fields share their points. As soon as one field is
     broken (stress), every tet gets points of its own, so that both sides of a jump are kept. A
@@ -76,6 +79,7 @@ def write_vtu(
     `region` numbers the regions; their names, units and versions stand as JSON in the field data
     `metadata` and in the comment at the head of the file.
     """
+    fields = _checked("write_vtu(path, mesh, fields)", path, mesh, fields)
     chosen = _degree(mesh, fields, degree)
     broken = any(not isinstance(field, Field) for field in fields.values())
     bary = domain_points(chosen, 3)
@@ -103,7 +107,7 @@ def write_vtu(
 def write_surface_vtu(
     path: str | Path,
     mesh: TetMesh,
-    fields: Mapping[str, AnyField],
+    fields: Mapping[str, AnyField] | AnyField | None = None,
     surface: str | tuple[str, ...] | None = None,
     degree: int | None = None,
     *,
@@ -115,6 +119,7 @@ def write_surface_vtu(
     The surface is one name, several names or, with None, the whole boundary; its triangles are
     oriented outwards. The rest is as in `write_vtu`; there is no cell data.
     """
+    fields = _checked("write_surface_vtu(path, mesh, fields)", path, mesh, fields)
     facets = facets_named(mesh, surface)
     chosen = _degree(mesh, fields, degree)
     broken = any(not isinstance(field, Field) for field in fields.values())
@@ -139,6 +144,23 @@ def write_surface_vtu(
         _metadata(chosen, metadata, surface=surface if surface is not None else "boundary"),
     )
     return written(path, _document(grid), overwrite)
+
+
+def _checked(call: str, path: Any, mesh: Any, fields: Any) -> dict[str, AnyField]:
+    """The fields by name, once path, mesh and fields are seen to be what they are called."""
+    path_given(path, call)
+    mesh_given(mesh, call)
+    if fields is None:
+        return {}
+    if isinstance(fields, Field | BrokenField):
+        vector = isinstance(fields, Field) and fields.shape == (3,)
+        return {"displacement" if vector else "field": fields}
+    if not isinstance(fields, Mapping):
+        return {"field": field_given(fields, call, 'the fields, as {"u": field} can')}
+    for name in fields:
+        if not isinstance(name, str):
+            raise InputError(f"{call}: {described(name)} cannot name a field; give text")
+    return {name: field_given(each, call, f"field {name!r}") for name, each in fields.items()}
 
 
 def _degree(mesh: TetMesh, fields: Mapping[str, AnyField], degree: int | None) -> int:
