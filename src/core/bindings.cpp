@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -230,6 +231,7 @@ public:
         require(static_cast<std::int64_t>(x.shape(0)) == k().controls(),
                 "x must have one row a control");
         nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
         return k().work(x.data());
     }
 
@@ -238,6 +240,9 @@ public:
         return *double_;
     }
     bezsoma::Team &team() { return team_; }
+    /// Threads of Python take turns: an operator has one team and one scratch space. Wait for it
+    /// without the interpreter, which whoever has the turn may need.
+    std::mutex &turn() { return turn_; }
     const bezsoma::Kernels &kernels() const { return *kernels_; }
 
 private:
@@ -247,9 +252,11 @@ private:
                 "x and y must have one row a control and as many sides");
         const int sides = static_cast<int>(x.shape(2));
         nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
         k.apply(x.data(), y.data(), sides);
     }
 
+    std::mutex turn_;
     bezsoma::Team team_;
     const bezsoma::Kernels *kernels_;
     std::unique_ptr<bezsoma::ElasticOperator<double>> double_;
@@ -272,6 +279,7 @@ public:
         const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
                                                     held_vertices.data() + held_vertices.size());
         nb::gil_scoped_release released;
+        const std::lock_guard turn(k_.turn());
         if (tets.degree > 1)
             blocks_ = std::make_unique<bezsoma::Preconditioner>(tets, corners.data(), vertices,
                                                                 held_.data(), k.k().chunks(),
@@ -288,6 +296,7 @@ public:
         bezsoma::Convergence found;
         {
             nb::gil_scoped_release released;
+            const std::lock_guard turn(k_.turn());
             found = bezsoma::conjugate_gradients(
                 k_.k(), blocks_.get(), [&](const float *r, float *z) { aggregation_->apply(r, z); },
                 held_.data(), f.data(), x.data(), reference, rtol, most, k_.team(),

@@ -14,6 +14,7 @@ from bezsoma.errors import InputError
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved
 from bezsoma.mesh import ControlNet, block
 from bezsoma.solvers import memory, solve
+from processes import prelude
 
 FACTOR = 2.0
 """How far an estimate may be from what is measured, either way."""
@@ -54,9 +55,8 @@ def measured(solver: str, cells: dict[int, int]) -> list[tuple[int, ...]]:
     """Degree, unknowns, bytes told and bytes taken beyond mesh and net, each in its own process."""
     if not Path("/proc/self/clear_refs").exists():
         pytest.skip("this system does not tell the peak of a part of a run")
-    path = f"import sys; sys.path[:0] = {sys.path!r}\n"
     cases = [f"{degree}x{count}" for degree, count in cells.items()]
-    command = [sys.executable, "-S", "-c", path + MEASURED, solver, *cases]
+    command = [sys.executable, "-S", "-c", prelude() + MEASURED, solver, *cases]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return [tuple(map(int, line.split())) for line in done.stdout.splitlines()]

@@ -24,6 +24,7 @@ from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Precedence, Tra
 from bezsoma.mesh import ControlNet, TetMesh, block
 from bezsoma.solvers import Solution, solve
 from cases.written import case_file
+from processes import prelude
 
 THREADS = (1, 2, 5)
 SETS = _core.instruction_sets()
@@ -188,9 +189,8 @@ def test_one_operator_in_two_threads() -> None:
 
 def script(text: str, *arguments: str) -> subprocess.Popen[str]:
     """A Python of its own that sees the BezSoma that this one sees."""
-    path = f"import sys; sys.path[:0] = {sys.path!r}\n"
     return subprocess.Popen(
-        [sys.executable, "-S", "-c", path + text, *arguments],
+        [sys.executable, "-S", "-c", prelude() + text, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
