@@ -313,6 +313,8 @@ public:
     void apply(In<double, -1, 3> r, Vectors z) {
         require(r.size() == held_.size() && z.size() == held_.size(),
                 "r and z must have one row a control");
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(k_.turn());
         std::vector<double> from(r.data(), r.data() + r.size()), to(r.size() + 16);
         from.resize(to.size());
         bezsoma::Search search{

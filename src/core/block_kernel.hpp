@@ -108,21 +108,20 @@ void back(const BlockBatches &b, std::int64_t entities, const float *coarse, dou
                 for (int k = 0; k < 3; ++k)
                     corner[3 * v + k][l] = from[k];
             }
-        Lanes<double, lanes> wide[rows];
-        rows_of_runs<rows, lanes>(p, b.control + i * lanes, wide);
+        Lanes<double, lanes> step[rows];
         for (int a = 0; a < own; ++a)
             for (int k = 0; k < 3; ++k) {
                 F z = load<float, lanes>(b.z + (i * rows + 3 * a + k) * lanes);
                 for (int v = 0; v <= dim; ++v)
                     z += vertex_weights<n, dim>.of[a][v] * corner[3 * v + k];
-                wide[3 * a + k] = beta * wide[3 * a + k] +
-                                  scale * __builtin_convertvector(z, Lanes<double, lanes>);
+                step[3 * a + k] = scale * __builtin_convertvector(z, Lanes<double, lanes>);
             }
+        // p is read number by number: what lies past a run may be another thread's to write.
         const std::int64_t left = entities - i * lanes;
         for (int l = 0; l < (left < lanes ? left : lanes); ++l) {
             double *to = p + 3 * std::int64_t{b.control[i * lanes + l]};
             for (int row = 0; row < rows; ++row)
-                to[row] = wide[row][l];
+                to[row] = beta * to[row] + step[row][l];
         }
     }
 }

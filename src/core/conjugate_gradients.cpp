@@ -91,7 +91,7 @@ Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner *bloc
     double norm = true_residual(), before = 0; // `before` is r.z of the last step, 0 at a start
     found.history.push_back(norm / reference);
     for (int i = 0;; ++i) {
-        if (norm <= rtol * reference) {
+        if (norm <= rtol * reference || i == most) {
             norm = true_residual();
             found.converged = norm <= rtol * reference * (1 + 1e-6);
             found.rounded = !found.converged && ++beginnings > most_beginnings;

@@ -60,10 +60,16 @@ def _factored(matrix: BlockMatrix, free: Ints) -> Callable[[Floats], Floats]:
     scale = 1 / np.sqrt(matrix.diagonal.ravel()[free])
     part = matrix.scipy().tocsr()[free][:, free]
     S = diags_array(scale)
-    factors = splu(
-        csc_array(S @ part @ S),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
+    try:
+        factors = splu(
+            csc_array(S @ part @ S),
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+    except MemoryError as full:
+        raise InputError(
+            f"the factors of {len(free)} unknowns are more than the direct solver can hold or "
+            "count; use solver='multigrid'"
+        ) from full
     return lambda r: scale * factors.solve(scale * r)

@@ -23,8 +23,8 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
 
     R_e picks the free controls inside entity e; P elevates from degree 1 to n; B_1 is a V-cycle
     of smoothed aggregation on the matrix of degree 1. The blocks damp what is rough within a tet,
-    degree 1 carries what is smooth across many (L. Pavarino, SIAM J. Numer. Anal. 31, 1994, on
-    additive methods of this kind). Everything is float32 on a residual scaled to one, which
+    degree 1 carries what is smooth across many (additive methods of this kind: L. Pavarino,
+    Numer. Math. 66, 1994). Everything is float32 on a residual scaled to one, which
     costs no iteration; held (c, 3) says which components are prescribed.
     """
     net = operator.net
