@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What one product K u takes, counted from the kernel (src/core/elastic_kernel.hpp).
+
+Flops are additions and multiplications. Where an addition follows a multiplication a processor
+does both at once, so `instructions` counts those pairs as one: a sum without factors, which most of
+the ladder is, fills half of a unit that is rated by such pairs.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import comb
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Of one tet and one right-hand side."""
+
+    flops: int
+    instructions: int
+
+
+def controls(degree: int) -> int:
+    """Of one tet; 0 for a degree of -1."""
+    return comb(degree + 3, 3)
+
+
+def of_tet(degree: int) -> Counts:
+    """Gradient, stress, ladder on six components, transposed gradient, sum into the forces.
+
+    At each control of degree n - 1 (counted beside the code):
+
+        differences  9 subtractions
+        gradient     9 sums of three products:             27 mul 18 add, 27 with pairs
+        stress       trace, scales, 6 components:          12 mul  8 add, 14 with pairs
+        forces       3 x (3 mul, 3 sums of three products, 2 + 4 additions):
+                                                           36 mul 36 add, 54 with pairs
+
+    and the ladder from level m = n - 1 down, for each of six components: 3 + 4 additions for each
+    control of the level below and one product for each of this level; last 3 sums for each control.
+
+    >>> of_tet(1).flops == 9 + 45 + 20 + 6 + 72 + 12
+    True
+    """
+    points = controls(degree - 1)
+    below = sum(controls(level) for level in range(degree - 1))
+    levels = sum(controls(level) for level in range(degree))
+    ladder = 6 * (7 * below + levels)
+    scatter = 3 * controls(degree)
+    flops = points * (9 + 45 + 20 + 72) + ladder + scatter
+    instructions = points * (9 + 27 + 14 + 54) + ladder + scatter
+    return Counts(flops, instructions)
+
+
+def bytes_of_tet(degree: int, width: int) -> int:
+    """Geometry, first controls and region of one tet, for numbers of `width` bytes."""
+    entities = (4, 10, 14, 15)[min(degree, 4) - 1]
+    return 9 * width + 4 * entities + 4
+
+
+def least_bytes(degree: int, tets: int, unknowns: int, width: int, sides: int) -> int:
+    """What has to move between memory and processor.
+
+    u is read; f is written, and read before that, as a cache does where a store misses; each tet's
+    own numbers are read once for all sides.
+    """
+    return 3 * width * unknowns * sides + tets * bytes_of_tet(degree, width)
