@@ -27,17 +27,19 @@ def estimate(net: ControlNet, solver: str) -> int:
     >>> estimate(three, "multigrid") < 2 * estimate(two, "multigrid")
     True
     """
-    matrix = 72 * _blocks(net)
-    if solver == "cg":
-        return 2 * matrix + 400 * net.count
     n, mesh = net.degree, net.mesh
-    if solver == "direct":  # fill by minimum degree grows with a power of the unknowns
+    if solver != "multigrid":
+        matrix = 72 * _blocks(net)
+        if solver == "cg":
+            return 2 * matrix + 400 * net.count
+        # Fill by minimum degree grows with a power of the unknowns.
         return 3 * matrix + int(40 * (1 + 3 / n**2) * (3 * net.count) ** 1.45)
     tets = len(mesh.tets) * (120 if n == 1 else 400)
     vectors = 10 * 24 * net.count
-    rows = [3 * comb(n - 1, dim) for dim in range(4)]
-    entities = (len(mesh.points), len(mesh.all_edges), len(mesh.all_faces), len(mesh.tets))
-    packed = sum(4 * n * (r * (r + 1) // 2 + 2 * r) for n, r in zip(entities, rows, strict=True))
+    packed = 0
+    for dim, starts in enumerate(net.starts):
+        rows = 3 * comb(n - 1, dim)
+        packed += 4 * len(starts) * (rows * (rows + 1) // 2 + 2 * rows)
     return tets + vectors + packed + 1500 * len(mesh.points)
 
 
