@@ -8,7 +8,7 @@ namespace bezsoma::BEZSOMA_ISA {
 /// a linear function to degree n. (controls inside, 4)
 template <int n, int dim> struct VertexWeights {
     float of[inside(n, dim) == 0 ? 1 : inside(n, dim)][4] = {};
-    consteval VertexWeights() {
+    constexpr VertexWeights() {
         int next = 0;
         for (int a0 = n; a0 >= 1; --a0)
             for (int a1 = n - a0; a1 >= 0; --a1)

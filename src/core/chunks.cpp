@@ -39,8 +39,8 @@ std::vector<Run> foreign_runs(const Chunks &all, const std::int32_t *first, cons
             if (first[t * per_tet + e] < chunk.control)
                 runs.push_back({first[t * per_tet + e], controls_inside(all.degree, e)});
     std::ranges::sort(runs, {}, &Run::control);
-    const auto twice = std::ranges::unique(runs, {}, &Run::control);
-    runs.erase(twice.begin(), twice.end());
+    const auto same = [](const Run &a, const Run &b) { return a.control == b.control; };
+    runs.erase(std::unique(runs.begin(), runs.end(), same), runs.end());
     return runs;
 }
 

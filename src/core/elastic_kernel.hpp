@@ -74,7 +74,7 @@ template <int m, class F> BEZSOMA_INLINE void each_control(F &&f) {
 
 // ---------------------------------------------------------------- the ladder
 
-consteval double factorial(int n) {
+static constexpr double factorial(int n) {
     double f = 1;
     for (int i = 2; i <= n; ++i)
         f *= i;
@@ -86,7 +86,7 @@ template <int m> struct LadderScales {
     double level[combinations(m + 4, 4)] =
         {}; // a_j multinomial(j, b)^2, levels 0..m one after another
 
-    consteval LadderScales() {
+    constexpr LadderScales() {
         int next = 0;
         for (int j = 0; j <= m; ++j) {
             const double a = 1.0 * combinations(m, j) * combinations(m, j) /
@@ -132,8 +132,8 @@ template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, 
 // ---------------------------------------------------------------- moving between lanes and tets
 
 /// One step of a transposition: exchanges the upper half-blocks of a with the lower ones of b.
-template <int lanes, int s> consteval int low(int p) { return p & s ? lanes + p - s : p; }
-template <int lanes, int s> consteval int high(int p) { return p & s ? lanes + p : p + s; }
+template <int lanes, int s> static constexpr int low(int p) { return p & s ? lanes + p - s : p; }
+template <int lanes, int s> static constexpr int high(int p) { return p & s ? lanes + p : p + s; }
 
 template <class T, int lanes, int s>
 BEZSOMA_INLINE void exchange(Lanes<T, lanes> &a, Lanes<T, lanes> &b) {
@@ -205,7 +205,7 @@ template <int n> inline constexpr EntityOrder<n> entity_order{};
 
 /// A number known when this is compiled.
 template <int value> struct Const {
-    consteval operator int() const { return value; }
+    constexpr operator int() const { return value; }
 };
 
 /// The same piece of each entity of one dimension. At low degree unrolled for good: the place of

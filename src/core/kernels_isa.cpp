@@ -84,7 +84,7 @@ constexpr int lanes64 = BEZSOMA_BYTES / 8, lanes32 = BEZSOMA_BYTES / 4;
      BEZSOMA_DEGREE(T, lanes, 4), BEZSOMA_DEGREE(T, lanes, 5), BEZSOMA_DEGREE(T, lanes, 6),        \
      BEZSOMA_DEGREE(T, lanes, 7), BEZSOMA_DEGREE(T, lanes, 8), BEZSOMA_DEGREE(T, lanes, 9),        \
      BEZSOMA_DEGREE(T, lanes, 10)}
-template <int n, int dim> consteval BlockKernel block_kernel() {
+template <int n, int dim> static constexpr BlockKernel block_kernel() {
     if constexpr (inside(n, dim) > 0)
         return {forward<n, dim, lanes64>, back<n, dim, lanes64>};
     else

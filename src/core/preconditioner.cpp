@@ -19,8 +19,8 @@ std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 Preconditioner::Preconditioner(const ElasticTets &tets, const std::int32_t *corners,
                                std::int64_t vertices, const std::uint8_t *fixed,
                                const Chunks &chunks, const Kernels &kernels, Team &team)
-    : degree_(tets.degree), lanes_(kernels.lanes64), kernel_(kernels.blocks[tets.degree - 1]),
-      team_(team), rows_{}, moments_from_{}, dots_(chunks.parts.size()) {
+    : lanes_(kernels.lanes64), kernel_(kernels.blocks[tets.degree - 1]), team_(team), rows_{},
+      moments_from_{}, dots_(chunks.parts.size()) {
     const Entities found = entities(tets.degree, tets.first, corners, tets.tets);
     for (const Chunk &chunk : chunks.parts)
         range_.push_back(std::ranges::lower_bound(found.all, chunk.control, {}, &Entity::control) -

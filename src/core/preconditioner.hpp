@@ -48,7 +48,7 @@ private:
     void list_moments(std::int64_t vertices);
     BlockBatches batches(std::size_t part, std::size_t dim);
 
-    int degree_, lanes_;
+    int lanes_;
     const BlockKernel *kernel_;
     Team &team_;
     std::vector<std::int64_t> range_; // (parts + 1,) the first entity of each chunk

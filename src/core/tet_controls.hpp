@@ -6,7 +6,7 @@
 
 namespace bezsoma {
 
-consteval int combinations(int n, int k) {
+static constexpr int combinations(int n, int k) {
     if (k < 0 || n < k)
         return 0;
     std::int64_t c = 1;
@@ -16,22 +16,22 @@ consteval int combinations(int n, int k) {
 }
 
 /// Controls of a tet of that degree.
-consteval int controls(int degree) { return combinations(degree + 3, 3); }
+static constexpr int controls(int degree) { return combinations(degree + 3, 3); }
 
 /// Position of alpha = (n - s3, s3 - s2, s2 - s1, s1) in the descending lexicographic order.
-consteval int position(int s3, int s2, int s1) {
+static constexpr int position(int s3, int s2, int s1) {
     return combinations(s3 + 2, 3) + combinations(s2 + 1, 2) + s1;
 }
 
 /// Entities of a tet that own controls: 4 vertices, 6 edges, 4 faces, 1 interior.
-consteval int entities(int degree) {
+static constexpr int entities(int degree) {
     return degree == 1 ? 4 : degree == 2 ? 10 : degree == 3 ? 14 : 15;
 }
 
 /// Controls inside one entity of dimension dim.
-consteval int inside(int degree, int dim) { return combinations(degree - 1, dim); }
+static constexpr int inside(int degree, int dim) { return combinations(degree - 1, dim); }
 
-consteval int entity_dim(int entity) {
+static constexpr int entity_dim(int entity) {
     return entity < 4 ? 0 : entity < 10 ? 1 : entity < 14 ? 2 : 3;
 }
 
@@ -40,7 +40,7 @@ consteval int entity_dim(int entity) {
 constexpr int entity_vertices[15] = {1, 2, 4, 8, 3, 5, 9, 6, 10, 12, 14, 13, 11, 7, 15};
 
 /// Controls of a tet that belong to entities before this one.
-consteval int first_of_entity(int degree, int entity) {
+static constexpr int first_of_entity(int degree, int entity) {
     int sum = 0;
     for (int e = 0; e < entity; ++e)
         sum += inside(degree, entity_dim(e));
@@ -51,7 +51,7 @@ consteval int first_of_entity(int degree, int entity) {
 /// number of a tet's controls is.
 template <int n> struct EntityOrder {
     int row[3 * controls(n)] = {};
-    consteval EntityOrder() {
+    constexpr EntityOrder() {
         int next = 0;
         for (int e = 0; e < entities(n); ++e)
             for (int s3 = 0; s3 <= n; ++s3)
