@@ -12,9 +12,8 @@ import difflib
 import io
 import os
 import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from tempfile import NamedTemporaryFile
 
 import meshio
 import numpy as np
@@ -26,6 +25,7 @@ from bezsoma.mesh.nouns import mesh_given, path_given
 from bezsoma.mesh.npz import read_npz, write_npz
 from bezsoma.mesh.tagged import Listing, mesh_of
 from bezsoma.mesh.tets import TetMesh
+from bezsoma.mesh.whole import write_whole
 
 FORMATS = {
     ".vtu": "vtu",
@@ -98,25 +98,9 @@ def write_mesh(path: str | os.PathLike[str], mesh: TetMesh, *, overwrite: bool =
     if not place.parent.is_dir():
         raise InputError(f"{path}: there is no folder {place.parent}; make it first")
     try:
-        _write_whole(place, lambda part: _write(part, suffix, mesh))
+        write_whole(place, lambda part: _write(part, suffix, mesh))
     except OSError as error:
         raise InputError(f"{path} could not be written: {error.strerror or error}") from error
-
-
-def _write_whole(place: Path, write: Callable[[Path], None]) -> None:
-    """Write beside the place and rename, so that nobody ever sees half a file."""
-    with NamedTemporaryFile(
-        dir=place.parent, prefix=f".{place.stem}-", suffix=place.suffix, delete=False
-    ) as file:
-        part = Path(file.name)
-    try:
-        write(part)
-        mask = os.umask(0)
-        os.umask(mask)
-        part.chmod(0o666 & ~mask)
-        os.replace(part, place)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _write(part: Path, suffix: str, mesh: TetMesh) -> None:

@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-import os
-import secrets
 from pathlib import Path
 
 from bezsoma.errors import InputError
+from bezsoma.mesh.whole import write_whole
 
 
 def written(path: str | Path, content: bytes, overwrite: bool = False) -> Path:
     """The path, once `content` stands there; refuses to replace a file unless `overwrite`.
-
-    The bytes go to a neighbour of the file first and are then moved in one step, so that an
-    interrupted run or a full disk leaves either the old file or none, never half of one.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -29,15 +25,10 @@ def written(path: str | Path, content: bytes, overwrite: bool = False) -> Path:
         raise InputError(f"{str(target)!r} exists; say overwrite=True to replace it")
     if not target.parent.is_dir():
         raise InputError(f"there is no folder {str(target.parent)!r}; make it first")
-    beside = target.with_name(f".{target.name}.{secrets.token_hex(4)}")
     try:
-        with beside.open("xb") as stream:
-            stream.write(content)
-        os.replace(beside, target)
+        write_whole(target, lambda part: part.write_bytes(content))
     except OSError as error:
         raise InputError(
             f"cannot write {str(target)!r} ({error.strerror}); make room or choose another folder"
         ) from error
-    finally:
-        beside.unlink(missing_ok=True)
     return target
