@@ -190,7 +190,8 @@ int main(int count, char **names) {
             std::printf("%s: not on this machine\n", names[which]);
             continue;
         }
-        for (int degree = 1; degree <= 5; ++degree) {
+        // Up to the highest degree that this build has (BEZSOMA_HIGHEST_DEGREE), or 5.
+        for (int degree = 1; degree <= 5 && kernels->f64[degree - 1].apply; ++degree) {
             const Mesh mesh(degree, degree == 1 ? 12 : degree == 2 ? 8 : 5);
             const Answer one = answer(mesh, *kernels, 1), four = answer(mesh, *kernels, 4);
             const bool same = one.forces == four.forces && one.single == four.single &&
