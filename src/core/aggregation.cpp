@@ -163,7 +163,7 @@ bool Aggregation::coarsened(Level &level, const std::vector<float> &inverse, dou
     // 4/3 of its inverse: the step that flattens the spectrum most (Vanek, Mandel, Brezina).
     level.p = smoothed(a, inverse, 4 / (3 * largest), made.basis, groups, team_);
     std::vector<float>().swap(made.basis);
-    level.columns = columns_of(level.p, groups.count);
+    level.columns = columns_of(level.p, groups.count, team_);
     std::optional<BlockRows> coarse = galerkin(a, level.p, level.columns, most, team_);
     if (!coarse)
         return false;
