@@ -61,13 +61,9 @@ class MatrixFree:
         lambda and mu are divided by `unit`.
         """
         net, mesh = self.net, self.net.mesh
-        first = [
-            net.starts[dim][entities[net.morton]].astype(np.int32)
-            for dim, entities in enumerate(net.entities_of_tet())
-        ]
         return _core.Walk(
             net.degree,
-            np.concatenate(first, axis=1),
+            net.walked(),
             net.morton,
             mesh.points,
             mesh.tets,
