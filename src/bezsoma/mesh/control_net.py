@@ -138,7 +138,12 @@ class ControlNet:
         return self.closure(1, self.edge_numbers(edges))
 
     def of_facets(self, facets: Ints) -> Ints:
-        """The controls of each facet (f, m2), for facets (f, 3) with ascending vertices."""
+        """The controls of each facet (f, m2), for facets (f, 3) with ascending vertices.
+
+        Those of degree 1 are its vertices' own, so that nothing is looked up.
+        """
+        if self.degree == 1:
+            return self.of_vertices(facets)
         return self.closure(2, self.face_numbers(facets))
 
     def edge_numbers(self, edges: Ints) -> Ints:

@@ -101,6 +101,7 @@ class TetMesh:
             checks.topology(faces, signs, np.flatnonzero(used))
         checks.one_namespace(surface=surfaces, edge=edges, vertex=vertices)
         self._hold_places(surfaces, edges, vertices, np.where(used, renumbered, -1))
+        del self.__dict__["_faces"]  # quickly found again; held, they would be much of the memory
 
     def _hold(self, **values: Any) -> None:
         for name, value in values.items():
