@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The C++ kernels: flat arrays in C order; 0 threads means all cores."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from .arrays import Bools, Floats, Ints
+from .arrays import Bools, Floats, Int32s, Ints
 
-Int32s = npt.NDArray[np.int32]
 Singles = npt.NDArray[np.float32]
 
 def element_matrices(
@@ -50,6 +49,25 @@ def solve_cholesky(
     r: Floats,
     z: Floats,
 ) -> None: ...
+
+def orientations(
+    points: Floats, tets: Ints, flat: float, largest: float
+) -> npt.NDArray[np.int8]: ...
+def simplices(tets: Ints, vertices: int, width: int) -> tuple[Int32s, Int32s]: ...
+def neighbours(
+    faces_of_tet: Int32s, faces: int, sign: npt.NDArray[np.int8]
+) -> tuple[Int32s, bool]: ...
+def components(pairs: Int32s, tets: int) -> Ints: ...
+def numbers_among(rows: Ints, among: Ints | Int32s) -> Ints: ...
+def sort_rows(rows: Ints) -> int: ...
+def first_controls(
+    order: Ints,
+    tets: Ints,
+    edges_of_tet: Int32s | None,
+    faces_of_tet: Int32s | None,
+    counts: Sequence[int],
+    inside: Sequence[int],
+) -> Ints: ...
 
 class Walk:
     def __init__(

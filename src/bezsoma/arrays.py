@@ -11,6 +11,7 @@ import numpy.typing as npt
 T = TypeVar("T", bound=np.generic)
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
+Int32s = npt.NDArray[np.int32]
 Bools = npt.NDArray[np.bool_]
 Numbers = npt.NDArray[Any]
 """float64, or objects such as `fractions.Fraction` where a function is also exact."""

@@ -37,6 +37,7 @@ std::vector<float> strengths(const BlockRows &a, double threshold, Team &team) {
 struct Grouping {
     const BlockRows &a;
     const std::vector<float> &strength;
+    Team &team;
     Aggregates found;
 
     template <class Visit> void each_strong(std::size_t i, const Visit &visit) const {
@@ -62,18 +63,18 @@ struct Grouping {
 
     /// Neighbourhoods that touch no other.
     void whole_neighbourhoods() {
-        for (std::size_t i = 0; i < found.of.size(); ++i) {
+        in_turn(team, found.of.size(), [&](std::size_t i) {
             bool free = found.of[i] < 0 && coupled(i);
             each_strong(i, [&](std::size_t j, float) { free = free && found.of[j] < 0; });
             if (free)
                 gather(i);
-        }
+        });
     }
 
     /// What is left over joins the neighbour that holds it most.
     void leftovers() {
         const std::vector<std::int32_t> first = found.of;
-        for (std::size_t i = 0; i < first.size(); ++i) {
+        in_turn(team, first.size(), [&](std::size_t i) {
             float most = 0;
             if (first[i] < 0)
                 each_strong(i, [&](std::size_t j, float s) {
@@ -82,13 +83,14 @@ struct Grouping {
                         found.of[i] = first[j];
                     }
                 });
-        }
+        });
     }
 
     void rest() {
-        for (std::size_t i = 0; i < found.of.size(); ++i)
+        in_turn(team, found.of.size(), [&](std::size_t i) {
             if (found.of[i] < 0 && coupled(i))
                 gather(i);
+        });
     }
 };
 
@@ -96,7 +98,7 @@ struct Grouping {
 
 Aggregates aggregates(const BlockRows &a, double threshold, Team &team) {
     const std::vector<float> strength = strengths(a, threshold, team);
-    Grouping grouping{a, strength, {std::vector<std::int32_t>(size_of(a.rows()), -1), 0}};
+    Grouping grouping{a, strength, team, {std::vector<std::int32_t>(size_of(a.rows()), -1), 0}};
     grouping.whole_neighbourhoods();
     grouping.leftovers();
     grouping.rest();

@@ -122,7 +122,10 @@ struct Aggregation::Level {
 Aggregation::Aggregation(BlockRows matrix, const double *points, const std::uint8_t *fixed,
                          Team &team)
     : team_(team) {
-    std::vector<double> of_rows = rigid_motions(points, fixed, size_of(matrix.rows()));
+    // Of the vertices they are many, and made again where a second try asks for them.
+    Motions of_rows = [=, rows = size_of(matrix.rows())] {
+        return rigid_motions(points, fixed, rows);
+    };
     for (bool coarser = true; coarser;) {
         levels_.push_back(std::make_unique<Level>(std::move(matrix), team));
         Level &level = *levels_.back();
@@ -135,7 +138,7 @@ Aggregation::Aggregation(BlockRows matrix, const double *points, const std::uint
 }
 
 /// Makes the next coarser matrix and the motions of its rows, unless nothing hangs together.
-bool Aggregation::coarsen(Level &level, BlockRows &matrix, std::vector<double> &of_rows) {
+bool Aggregation::coarsen(Level &level, BlockRows &matrix, Motions &of_rows) {
     const BlockRows &a = level.a.matrix();
     const std::vector<float> inverse = level.a.inverse_diagonal(team_);
     level.residual.resize(size_of(a.rows() * a.high) + BlockRows::slack);
@@ -153,23 +156,23 @@ bool Aggregation::coarsen(Level &level, BlockRows &matrix, std::vector<double> &
 }
 
 bool Aggregation::coarsened(Level &level, const std::vector<float> &inverse, double threshold,
-                            std::size_t most, BlockRows &matrix, std::vector<double> &of_rows) {
+                            std::size_t most, BlockRows &matrix, Motions &of_rows) {
     const BlockRows &a = level.a.matrix();
     const Aggregates groups = aggregates(a, threshold, team_);
     if (groups.count >= a.rows() * 8 / 10)
         return false;
-    Tentative made = tentative(of_rows, a.high, groups, team_);
+    Tentative made = tentative(of_rows(), a.high, groups, team_);
     const double largest = margin * largest_eigenvalue(a, inverse, team_);
     // 4/3 of its inverse: the step that flattens the spectrum most (Vanek, Mandel, Brezina).
     level.p = smoothed(a, inverse, 4 / (3 * largest), made.basis, groups, team_);
     std::vector<float>().swap(made.basis);
-    level.columns = columns_of(level.p, groups.count);
+    level.columns = columns_of(level.p, groups.count, team_);
     std::optional<BlockRows> coarse = galerkin(a, level.p, level.columns, most, team_);
     if (!coarse)
         return false;
     matrix = std::move(*coarse);
     make_definite(matrix);
-    of_rows = std::move(made.coarse);
+    of_rows = [coarse = std::move(made.coarse)] { return coarse; };
     level.r.resize(size_of(groups.count) * motions + BlockRows::slack);
     level.z.resize(level.r.size());
     return true;

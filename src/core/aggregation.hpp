@@ -12,6 +12,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -39,9 +40,10 @@ public:
 
 private:
     struct Level;
-    bool coarsen(Level &level, BlockRows &matrix, std::vector<double> &of_rows);
+    using Motions = std::function<std::vector<double>()>; // of the rows of a level
+    bool coarsen(Level &level, BlockRows &matrix, Motions &of_rows);
     bool coarsened(Level &level, const std::vector<float> &inverse, double threshold,
-                   std::size_t most, BlockRows &matrix, std::vector<double> &of_rows);
+                   std::size_t most, BlockRows &matrix, Motions &of_rows);
     void cycle(std::size_t level, const float *r, float *z);
     void solve_coarsest(const float *r, float *z);
 

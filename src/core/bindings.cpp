@@ -2,14 +2,18 @@
 // The one file that knows Python. It checks shapes, releases the interpreter and calls the kernels.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,7 +24,9 @@
 #include "elastic_operator.hpp"
 #include "elasticity.hpp"
 #include "preconditioner.hpp"
+#include "shape.hpp"
 #include "simplex.hpp"
+#include "topology.hpp"
 #include "vertex_matrix.hpp"
 
 namespace nb = nanobind;
@@ -46,6 +52,13 @@ Out<T, shape...> handed_over(std::vector<T> &&values, std::initializer_list<std:
 void require(bool holds, const char *what) {
     if (!holds)
         throw nb::value_error(what);
+}
+
+/// Lets Python's signal handlers run: Ctrl-C in the middle of a computation.
+void listen_to_signals() {
+    nb::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0)
+        throw nb::python_error();
 }
 
 /// gradients, volumes, lambda and mu of the same tets.
@@ -85,7 +98,9 @@ auto pattern(In<std::int64_t, -1, -1> of_tet, std::size_t controls) {
     bezsoma::Pattern where;
     {
         nb::gil_scoped_release released;
-        where = bezsoma::pattern(of_tet.data(), of_tet.shape(0), of_tet.shape(1), controls);
+        bezsoma::Team alone(1);
+        alone.watch(listen_to_signals);
+        where = bezsoma::pattern(of_tet.data(), of_tet.shape(0), of_tet.shape(1), controls, alone);
     }
     const std::size_t blocks = where.column.size();
     return nb::make_tuple(handed_over<std::int64_t, -1>(std::move(where.start), {controls + 1}),
@@ -102,8 +117,10 @@ auto assembled(int degree, In<std::int64_t, -1, -1> of_tet, In<double, -1, 4, 3>
         nb::gil_scoped_release released;
         const bezsoma::Elements elements{of_tet.shape(0), of_tet.data(), gradients.data(),
                                          volumes.data(),  lambda.data(), mu.data()};
-        bezsoma::assemble(bezsoma::stiffness(degree), elements, rows(start, column), threads,
-                          blocks.data());
+        const bezsoma::Rows where = rows(start, column);
+        bezsoma::Team team(threads, where.rows / bezsoma::rows_assembled);
+        team.watch(listen_to_signals);
+        bezsoma::assemble(bezsoma::stiffness(degree), elements, where, team, blocks.data());
     }
     return handed_over<double, -1, 3, 3>(std::move(blocks), {column.shape(0), 3, 3});
 }
@@ -114,7 +131,8 @@ void multiply(In<std::int64_t, -1> start, In<std::int32_t, -1> column, In<double
     require(x.shape(0) == where.rows && y.shape(0) == where.rows,
             "x and y must have one row a control");
     nb::gil_scoped_release released;
-    bezsoma::multiply(where, blocks.data(), x.data(), threads, y.data());
+    bezsoma::Team team(threads, where.rows / bezsoma::rows_multiplied);
+    bezsoma::multiply(where, blocks.data(), x.data(), team, y.data());
 }
 
 auto incomplete_cholesky(In<std::int64_t, -1> start, In<std::int32_t, -1> column,
@@ -143,6 +161,94 @@ void solve_cholesky(In<std::int64_t, -1> start, In<std::int32_t, -1> column,
             "r and z must have one row a control");
     nb::gil_scoped_release released;
     bezsoma::solve_cholesky({where, below.data(), inverse.data()}, r.data(), z.data());
+}
+
+// ------------------------------------------------------------------ topology
+
+using TetCorners = In<std::int64_t, -1, 4>;
+
+/// Work that one thread does and Ctrl-C stops, outside of the interpreter.
+template <class Work> auto interruptible(const Work &work) {
+    nb::gil_scoped_release released;
+    bezsoma::Team alone(1);
+    alone.watch(listen_to_signals);
+    return work(alone);
+}
+
+std::int64_t rows_of(const auto &array) { return static_cast<std::int64_t>(array.shape(0)); }
+
+auto orientations(In<double, -1, 3> points, TetCorners tets, double flat, double largest) {
+    auto found = interruptible([&](bezsoma::Team &team) {
+        return bezsoma::orientations(points.data(), tets.data(), rows_of(tets), flat, largest,
+                                     team);
+    });
+    return handed_over<std::int8_t, -1>(std::move(found), {tets.shape(0)});
+}
+
+auto simplices(TetCorners tets, std::int64_t vertices, int width) {
+    require(width == 2 || width == 3, "width is 2 for edges and 3 for faces");
+    const std::size_t per_tet = width == 2 ? 6 : 4;
+    require(vertices <= std::numeric_limits<std::int32_t>::max() &&
+                per_tet * tets.shape(0) <= std::numeric_limits<std::int32_t>::max(),
+            "more than 2^31 - 1 vertices, edges or faces of tets do not fit 32-bit numbers");
+    auto found = interruptible([&](bezsoma::Team &team) {
+        return bezsoma::simplices({rows_of(tets), tets.data(), vertices}, width, team);
+    });
+    const auto wide = static_cast<std::size_t>(width);
+    const std::size_t count = found.rows.size() / wide;
+    return nb::make_tuple(
+        handed_over<std::int32_t, -1, -1>(std::move(found.rows), {count, wide}),
+        handed_over<std::int32_t, -1, -1>(std::move(found.of_tet), {tets.shape(0), per_tet}));
+}
+
+auto neighbours(In<std::int32_t, -1, 4> faces_of_tet, std::int64_t faces,
+                In<std::int8_t, -1> sign) {
+    require(sign.shape(0) == faces_of_tet.shape(0), "sign must have one number a tet");
+    auto found = interruptible([&](bezsoma::Team &team) {
+        return bezsoma::neighbours(faces_of_tet.data(), rows_of(faces_of_tet), faces, sign.data(),
+                                   team);
+    });
+    const std::size_t rows = found.pairs.size() / 2;
+    return nb::make_tuple(handed_over<std::int32_t, -1, 2>(std::move(found.pairs), {rows, 2}),
+                          found.sound);
+}
+
+auto components(In<std::int32_t, -1, 2> pairs, std::int64_t tets) {
+    auto found = interruptible([&](bezsoma::Team &team) {
+        return bezsoma::components(pairs.data(), rows_of(pairs), tets, team);
+    });
+    return handed_over<std::int64_t, -1>(std::move(found), {static_cast<std::size_t>(tets)});
+}
+
+auto numbers_among(In<std::int64_t, -1, -1> rows, In<std::int32_t, -1, -1> among) {
+    require(rows.shape(1) == among.shape(1), "rows and among must have the same width");
+    auto found = bezsoma::numbers_among(rows.data(), rows_of(rows), among.data(), rows_of(among),
+                                        static_cast<int>(rows.shape(1)));
+    return handed_over<std::int64_t, -1>(std::move(found), {rows.shape(0)});
+}
+
+std::int64_t sort_rows(nb::ndarray<std::int64_t, nb::shape<-1, -1>, nb::c_contig> rows) {
+    return interruptible([&](bezsoma::Team &team) {
+        return bezsoma::sort_rows(rows.data(), rows_of(rows), static_cast<int>(rows.shape(1)),
+                                  team);
+    });
+}
+
+auto first_controls(In<std::int64_t, -1> order, TetCorners tets,
+                    std::optional<In<std::int32_t, -1, 6>> edges_of_tet,
+                    std::optional<In<std::int32_t, -1, 4>> faces_of_tet,
+                    std::array<std::int64_t, 4> counts, std::array<std::int64_t, 4> inside) {
+    require(order.shape(0) == tets.shape(0) &&
+                (inside[1] == 0 || (edges_of_tet && edges_of_tet->shape(0) == tets.shape(0))) &&
+                (inside[2] == 0 || (faces_of_tet && faces_of_tet->shape(0) == tets.shape(0))),
+            "order, edges_of_tet and faces_of_tet must have one row a tet");
+    auto found = interruptible([&](bezsoma::Team &team) {
+        return bezsoma::first_controls({tets.data(), edges_of_tet ? edges_of_tet->data() : nullptr,
+                                        faces_of_tet ? faces_of_tet->data() : nullptr},
+                                       order.data(), rows_of(tets), counts, inside, team);
+    });
+    const std::size_t count = found.size();
+    return handed_over<std::int64_t, -1>(std::move(found), {count});
 }
 
 // ------------------------------------------------------------------ without a matrix
@@ -192,12 +298,10 @@ struct Walk {
     }
 };
 
-/// Lets Python's signal handlers run: Ctrl-C in the middle of a computation.
-void listen_to_signals() {
-    nb::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() != 0)
-        throw nb::python_error();
-}
+/// Threads of Python take turns: an operator has one team and one scratch space. Wait for a turn
+/// without the interpreter, which whoever has it may need. Who is told of an iteration has the turn
+/// and may use the operator too: nothing of it is in use between two jobs.
+using Turn = std::lock_guard<std::recursive_mutex>;
 
 /// K of one body without a matrix in one precision, its threads, and the kernels of one
 /// instruction set. What it was made from is not kept.
@@ -231,7 +335,7 @@ public:
         require(static_cast<std::int64_t>(x.shape(0)) == k().controls(),
                 "x must have one row a control");
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         return k().work(x.data());
     }
 
@@ -240,9 +344,7 @@ public:
         return *double_;
     }
     bezsoma::Team &team() { return team_; }
-    /// Threads of Python take turns: an operator has one team and one scratch space. Wait for it
-    /// without the interpreter, which whoever has the turn may need.
-    std::mutex &turn() { return turn_; }
+    std::recursive_mutex &turn() { return turn_; }
     const bezsoma::Kernels &kernels() const { return *kernels_; }
 
 private:
@@ -252,11 +354,11 @@ private:
                 "x and y must have one row a control and as many sides");
         const int sides = static_cast<int>(x.shape(2));
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         k.apply(x.data(), y.data(), sides);
     }
 
-    std::mutex turn_;
+    std::recursive_mutex turn_;
     bezsoma::Team team_;
     const bezsoma::Kernels *kernels_;
     std::unique_ptr<bezsoma::ElasticOperator<double>> double_;
@@ -279,7 +381,7 @@ public:
         const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
                                                     held_vertices.data() + held_vertices.size());
         nb::gil_scoped_release released;
-        const std::lock_guard turn(k_.turn());
+        const Turn turn(k_.turn());
         if (tets.degree > 1)
             blocks_ = std::make_unique<bezsoma::Preconditioner>(tets, corners.data(), vertices,
                                                                 held_.data(), k.k().chunks(),
@@ -296,7 +398,7 @@ public:
         bezsoma::Convergence found;
         {
             nb::gil_scoped_release released;
-            const std::lock_guard turn(k_.turn());
+            const Turn turn(k_.turn());
             found = bezsoma::conjugate_gradients(
                 k_.k(), blocks_.get(), [&](const float *r, float *z) { aggregation_->apply(r, z); },
                 held_.data(), f.data(), x.data(), reference, rtol, most, k_.team(),
@@ -314,7 +416,7 @@ public:
         require(r.size() == held_.size() && z.size() == held_.size(),
                 "r and z must have one row a control");
         nb::gil_scoped_release released;
-        const std::lock_guard turn(k_.turn());
+        const Turn turn(k_.turn());
         std::vector<double> from(r.data(), r.data() + r.size()), to(r.size() + 16);
         from.resize(to.size());
         bezsoma::Search search{
@@ -351,6 +453,14 @@ NB_MODULE(_core, m) {
           "held"_a, "shift"_a, "least"_a);
     m.def("solve_cholesky", &solve_cholesky, "starts"_a, "columns"_a, "below"_a, "inverse"_a, "r"_a,
           "z"_a);
+    m.def("orientations", &orientations, "points"_a, "tets"_a, "flat"_a, "largest"_a);
+    m.def("simplices", &simplices, "tets"_a, "vertices"_a, "width"_a);
+    m.def("neighbours", &neighbours, "faces_of_tet"_a, "faces"_a, "sign"_a);
+    m.def("components", &components, "pairs"_a, "tets"_a);
+    m.def("numbers_among", &numbers_among, "rows"_a, "among"_a);
+    m.def("sort_rows", &sort_rows, "rows"_a.noconvert());
+    m.def("first_controls", &first_controls, "order"_a, "tets"_a, "edges_of_tet"_a.none(),
+          "faces_of_tet"_a.none(), "counts"_a, "inside"_a);
     nb::class_<Walk>(m, "Walk").def(
         nb::init<int, In<std::int32_t, -1, -1>, In<std::int64_t, -1>, In<double, -1, 3>,
                  In<std::int64_t, -1, 4>, In<std::int64_t, -1>, In<double, -1, 2>>(),

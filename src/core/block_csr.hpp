@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "elasticity.hpp"
+#include "team.hpp"
 
 namespace bezsoma {
 
@@ -20,7 +21,7 @@ struct Incidence {
 };
 
 Incidence incidence(const std::int64_t *of_tet, std::size_t tets, std::size_t per_tet,
-                    std::size_t controls);
+                    std::size_t controls, Team &team);
 
 /// Which controls meet in a tet.
 struct Pattern {
@@ -29,7 +30,7 @@ struct Pattern {
 };
 
 Pattern pattern(const std::int64_t *of_tet, std::size_t tets, std::size_t per_tet,
-                std::size_t controls);
+                std::size_t controls, Team &team);
 
 /// Where blocks stand, seen from elsewhere: start (rows + 1,), column (blocks,).
 struct Rows {
@@ -48,13 +49,15 @@ struct Elements {
     const double *mu;
 };
 
+// What a thread takes at a time: more threads than that many rows fill are of no use.
+constexpr std::size_t rows_assembled = 64, rows_multiplied = 1024;
+
 /// Fills out (blocks, 3, 3); each block is summed over its
 /// tets in ascending order, by one thread.
-void assemble(const Stiffness &k, const Elements &elements, const Rows &where, std::size_t threads,
+void assemble(const Stiffness &k, const Elements &elements, const Rows &where, Team &team,
               double *out);
 
 /// y = A x, both (c, 3), for blocks (blocks, 3, 3).
-void multiply(const Rows &where, const double *blocks, const double *x, std::size_t threads,
-              double *y);
+void multiply(const Rows &where, const double *blocks, const double *x, Team &team, double *y);
 
 } // namespace bezsoma

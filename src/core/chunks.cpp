@@ -20,10 +20,10 @@ int controls_inside(int degree, int entity) {
 
 namespace {
 
-/// One past the last control that these tets touch, if that is above `least`.
-std::int32_t end_of_owned(const Chunks &all, const std::int32_t *first, const Chunk &chunk) {
+/// One past the last control that these tets touch.
+std::int32_t end_of_touched(const Chunks &all, const std::int32_t *first, const Chunk &chunk) {
     const int per_tet = entities_of_tet(all.degree);
-    std::int32_t end = chunk.control;
+    std::int32_t end = 0;
     for (std::int64_t t = chunk.tet; t < chunk.tet + chunk.tets; ++t)
         for (int e = 0; e < per_tet; ++e)
             end = std::max(end, first[t * per_tet + e] + controls_inside(all.degree, e));
@@ -66,8 +66,9 @@ void number_locally(Chunks &all, const std::int32_t *first, const Chunk &chunk) 
 }
 
 /// Tells every owner which runs other chunks add to.
-void hand_to_owners(Chunks &all) {
+void hand_to_owners(Chunks &all, Team &team) {
     for (auto &chunk : all.parts) {
+        team.ask();
         std::int64_t from = chunk.foreign_begin;
         for (const Run &run : chunk.runs) {
             const auto after =
@@ -80,29 +81,41 @@ void hand_to_owners(Chunks &all) {
 
 } // namespace
 
-Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target) {
+Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target,
+              Team &team) {
     // A tet adds n^3 / 6 controls on the average in a large mesh.
     const std::int64_t per_tet = std::max(1, degree * degree * degree / 6);
     const std::int64_t most = std::max<std::int64_t>(64, target / per_tet);
     const std::int64_t number = (tets + most - 1) / most;
     Chunks all{degree, 0, 0, {}, {}, 0};
     all.local.resize(static_cast<std::size_t>(tets * entities_of_tet(degree)));
-    std::int32_t control = 0;
+    all.parts.resize(static_cast<std::size_t>(number));
     for (std::int64_t i = 0; i < number; ++i) {
-        const std::int64_t tet = tets * i / number, after = tets * (i + 1) / number;
-        Chunk chunk{tet, after - tet, control, 0, all.foreign, 0, {}, {}};
-        control = end_of_owned(all, first, chunk);
-        chunk.owned = control - chunk.control;
+        Chunk &chunk = all.parts[static_cast<std::size_t>(i)];
+        chunk.tet = tets * i / number;
+        chunk.tets = tets * (i + 1) / number - chunk.tet;
+    }
+    const auto each = [&](const auto &work) {
+        team.run(all.parts.size(), [&](std::size_t i, std::size_t) { work(all.parts[i]); });
+    };
+    each([&](Chunk &chunk) { chunk.owned = end_of_touched(all, first, chunk); });
+    for (Chunk &chunk : all.parts) {
+        chunk.control = static_cast<std::int32_t>(all.controls);
+        all.controls = std::max<std::int64_t>(all.controls, chunk.owned);
+        chunk.owned = static_cast<std::int32_t>(all.controls) - chunk.control;
+    }
+    each([&](Chunk &chunk) {
         chunk.runs = foreign_runs(all, first, chunk);
+        number_locally(all, first, chunk);
+    });
+    for (Chunk &chunk : all.parts) {
+        chunk.foreign_begin = all.foreign;
         for (const Run &run : chunk.runs)
             chunk.foreign += run.length;
         all.foreign += chunk.foreign;
         all.largest = std::max(all.largest, chunk.owned + chunk.foreign);
-        number_locally(all, first, chunk);
-        all.parts.push_back(std::move(chunk));
     }
-    all.controls = control;
-    hand_to_owners(all);
+    hand_to_owners(all, team);
     return all;
 }
 

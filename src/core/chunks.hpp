@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "team.hpp"
+
 namespace bezsoma {
 
 /// Entities of a tet that hold controls at this degree, and the controls inside each.
@@ -53,6 +55,7 @@ struct Chunks {
 ///
 /// first (tets, entities): the first control of each entity of each tet, tets in the order of the
 /// walk that numbered them.
-Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target);
+Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target,
+              Team &team);
 
 } // namespace bezsoma

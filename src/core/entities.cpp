@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "entities.hpp"
 
-#include <algorithm>
+#include <numeric>
 
 #include "chunks.hpp"
 #include "tet_controls.hpp"
@@ -21,38 +21,42 @@ Entity entity_of_tet(std::int32_t control, int local, const std::int32_t *corner
 } // namespace
 
 Entities entities(int degree, const std::int32_t *first, const std::int32_t *corners,
-                  std::int64_t tets) {
+                  std::int64_t tets, Team &team) {
     const std::size_t per_tet = static_cast<std::size_t>(entities_of_tet(degree));
     const std::size_t touches = static_cast<std::size_t>(tets) * per_tet;
-    Entities found;
+    const auto size = [](auto n) { return static_cast<std::size_t>(n); };
     // The walk numbered entities as it met them, so a new one begins where the last one ended.
-    std::int32_t next = 0;
-    for (std::size_t i = 0; i < touches; ++i)
-        if (first[i] == next) {
-            const int local = static_cast<int>(i % per_tet);
-            found.all.push_back(entity_of_tet(next, local, corners + 4 * (i / per_tet)));
-            next += controls_inside(degree, local);
+    std::size_t count = 0, controls = 0;
+    in_turn(team, touches, [&](std::size_t i) {
+        if (size(first[i]) == controls) {
+            ++count;
+            controls += size(controls_inside(degree, static_cast<int>(i % per_tet)));
         }
-    const auto number = [&](std::int32_t control) {
-        return static_cast<std::size_t>(
-            std::ranges::lower_bound(found.all, control, {}, &Entity::control) - found.all.begin());
-    };
-    std::vector<std::int32_t> of_touch(touches);
-    found.start.assign(found.all.size() + 1, 0);
-    for (std::size_t i = 0; i < touches; ++i) {
-        of_touch[i] = static_cast<std::int32_t>(number(first[i]));
-        ++found.start[static_cast<std::size_t>(of_touch[i]) + 1];
-    }
-    for (std::size_t e = 0; e < found.all.size(); ++e)
-        found.start[e + 1] += found.start[e];
+    });
+    Entities found;
+    found.all.reserve(count);
+    std::vector<std::int32_t> number; // of the entity that begins at a control
+    number.reserve(controls);
+    in_turn(team, touches, [&](std::size_t i) {
+        if (size(first[i]) != number.size())
+            return;
+        const int local = static_cast<int>(i % per_tet);
+        number.resize(number.size() + size(controls_inside(degree, local)),
+                      static_cast<std::int32_t>(found.all.size()));
+        found.all.push_back(entity_of_tet(first[i], local, corners + 4 * (i / per_tet)));
+    });
+    found.start.assign(found.all.size() + 2, 0);
+    // Two places ahead, so that filling moves each start to where it belongs.
+    in_turn(team, touches, [&](std::size_t i) { ++found.start[size(number[size(first[i])]) + 2]; });
+    std::partial_sum(found.start.begin(), found.start.end(), found.start.begin());
     found.around.resize(touches);
     found.local.resize(touches);
-    std::vector<std::int64_t> at(found.start.begin(), found.start.end() - 1);
-    for (std::size_t i = 0; i < touches; ++i) {
-        const auto to = static_cast<std::size_t>(at[static_cast<std::size_t>(of_touch[i])]++);
+    in_turn(team, touches, [&](std::size_t i) {
+        const auto to = size(found.start[size(number[size(first[i])]) + 1]++);
         found.around[to] = static_cast<std::int32_t>(i / per_tet);
         found.local[to] = static_cast<std::uint8_t>(i % per_tet);
-    }
+    });
+    found.start.pop_back();
     return found;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernels.hpp"
+#include "team.hpp"
 
 namespace bezsoma {
 
@@ -19,6 +20,6 @@ struct Entities {
 /// first (tets, entities): as in chunks.hpp; corners (tets, 4): the controls of the degree-1 net,
 /// in the order of each tet's ascending vertices.
 Entities entities(int degree, const std::int32_t *first, const std::int32_t *corners,
-                  std::int64_t tets);
+                  std::int64_t tets, Team &team);
 
 } // namespace bezsoma

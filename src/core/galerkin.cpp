@@ -162,7 +162,7 @@ void mirror(BlockRows &a, Team &team) {
 
 } // namespace
 
-Columns columns_of(const BlockRows &a, std::int64_t columns) {
+Columns columns_of(const BlockRows &a, std::int64_t columns, Team &team) {
     Columns found{std::vector<std::int64_t>(size_of(columns) + 1),
                   std::vector<std::int32_t>(a.column.size()),
                   std::vector<std::uint32_t>(a.column.size())};
@@ -170,12 +170,13 @@ Columns columns_of(const BlockRows &a, std::int64_t columns) {
         ++found.start[size_of(c) + 1];
     std::partial_sum(found.start.begin(), found.start.end(), found.start.begin());
     std::vector<std::int64_t> next(found.start.begin(), found.start.end() - 1);
-    for (std::size_t i = 0; i < size_of(a.rows()); ++i)
+    in_turn(team, size_of(a.rows()), [&](std::size_t i) {
         for (auto at = size_of(a.start[i]); at < size_of(a.start[i + 1]); ++at) {
             const auto to = size_of(next[size_of(a.column[at])]++);
             found.row[to] = of(i);
             found.at[to] = static_cast<std::uint32_t>(at);
         }
+    });
     return found;
 }
 

@@ -16,7 +16,7 @@ struct Columns {
     std::vector<std::uint32_t> at;   // among the blocks
 };
 
-Columns columns_of(const BlockRows &a, std::int64_t columns);
+Columns columns_of(const BlockRows &a, std::int64_t columns, Team &team);
 
 /// P^T A P, exactly symmetric, columns ascending; never all of A P at once. Nothing, and no time
 /// spent on numbers, where it would have more than `most` blocks.

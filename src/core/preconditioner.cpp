@@ -21,7 +21,7 @@ Preconditioner::Preconditioner(const ElasticTets &tets, const std::int32_t *corn
                                const Chunks &chunks, const Kernels &kernels, Team &team)
     : lanes_(kernels.lanes64), kernel_(kernels.blocks[tets.degree - 1]), team_(team), rows_{},
       moments_from_{}, dots_(chunks.parts.size()) {
-    const Entities found = entities(tets.degree, tets.first, corners, tets.tets);
+    const Entities found = entities(tets.degree, tets.first, corners, tets.tets, team);
     for (const Chunk &chunk : chunks.parts)
         range_.push_back(std::ranges::lower_bound(found.all, chunk.control, {}, &Entity::control) -
                          found.all.begin());
@@ -36,6 +36,7 @@ void Preconditioner::arrange(const Entities &entities) {
     for (std::size_t dim = 0; dim < 4; ++dim) {
         std::int64_t batch = 0;
         for (std::size_t part = 0; part + 1 < range_.size(); ++part) {
+            team_.ask();
             std::int64_t count = 0;
             for (auto e = size(range_[part]); e < size(range_[part + 1]); ++e)
                 if (size(entities.all[e].dim) == dim) {
@@ -92,13 +93,14 @@ void Preconditioner::list_moments(std::int64_t vertices) {
     moment_start_.assign(size(vertices) + 1, 0);
     const auto each = [&](const auto &visit) {
         for (std::size_t dim = 0; dim < 4; ++dim)
-            for (std::size_t i = 0; i < number_[dim].size(); ++i)
+            in_turn(team_, number_[dim].size(), [&](std::size_t i) {
                 for (std::size_t v = 0; v <= dim && number_[dim][i] >= 0; ++v) {
                     const std::size_t lanes = size(lanes_), batch = i / lanes, lane = i % lanes;
                     const std::size_t corner = batch * (dim + 1) + v;
                     visit(size(vertices_[dim][corner * lanes + lane]),
                           moments_from_[dim] + corner * 3 * lanes + lane);
                 }
+            });
     };
     each([&](std::size_t vertex, std::size_t) { ++moment_start_[vertex + 1]; });
     std::partial_sum(moment_start_.begin(), moment_start_.end(), moment_start_.begin());

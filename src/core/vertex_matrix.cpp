@@ -11,15 +11,17 @@ struct Around {
     std::vector<std::uint32_t> corner;
 };
 
-Around tets_around(const std::int32_t *corners, std::int64_t tets, std::int64_t vertices) {
+Around tets_around(const std::int32_t *corners, std::int64_t tets, std::int64_t vertices,
+                   Team &team) {
     Around found{std::vector<std::int64_t>(size_of(vertices) + 1),
                  std::vector<std::uint32_t>(size_of(4 * tets))};
-    for (std::size_t i = 0; i < size_of(4 * tets); ++i)
-        ++found.start[size_of(corners[i]) + 1];
+    in_turn(team, size_of(4 * tets),
+            [&](std::size_t i) { ++found.start[size_of(corners[i]) + 1]; });
     std::partial_sum(found.start.begin(), found.start.end(), found.start.begin());
     std::vector<std::int64_t> at(found.start.begin(), found.start.end() - 1);
-    for (std::size_t i = 0; i < size_of(4 * tets); ++i)
+    in_turn(team, size_of(4 * tets), [&](std::size_t i) {
         found.corner[size_of(at[size_of(corners[i])]++)] = static_cast<std::uint32_t>(i);
+    });
     return found;
 }
 
@@ -68,7 +70,7 @@ struct Rows {
 
 BlockRows vertex_matrix(const ElasticTets &tets, const std::int32_t *corners, std::int64_t vertices,
                         const std::uint8_t *fixed, Team &team) {
-    const Around around = tets_around(corners, tets.tets, vertices);
+    const Around around = tets_around(corners, tets.tets, vertices, team);
     BlockRows a = with_pattern(
         sparsity(team, vertices, vertices,
                  [&](std::size_t v, const auto &take) {

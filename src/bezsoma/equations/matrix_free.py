@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bezsoma import _core
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Floats, Int32s
 from bezsoma.mesh.control_net import ControlNet
 
 
@@ -55,19 +55,15 @@ class MatrixFree:
     def _single(self) -> _core.MatrixFree:
         return _core.MatrixFree(self.walk(), self.threads, self.instructions, single=True)
 
-    def walk(self, unit: float = 1.0) -> _core.Walk:
+    def walk(self, unit: float = 1.0, first: Int32s | None = None) -> _core.Walk:
         """The tets in the order in which they numbered the controls, as the core takes them.
 
-        lambda and mu are divided by `unit`.
+        lambda and mu are divided by `unit`; `first` are the `walked` controls, if at hand.
         """
         net, mesh = self.net, self.net.mesh
-        first = [
-            net.starts[dim][entities[net.morton]].astype(np.int32)
-            for dim, entities in enumerate(net.entities_of_tet())
-        ]
         return _core.Walk(
             net.degree,
-            np.concatenate(first, axis=1),
+            net.walked() if first is None else first,
             net.morton,
             mesh.points,
             mesh.tets,

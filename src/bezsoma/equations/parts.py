@@ -52,7 +52,9 @@ def parts_of(mesh: TetMesh) -> Parts:
     """The face-connected parts of a mesh."""
     label = mesh.components()
     count = int(label.max()) + 1
-    keys = np.unique(np.repeat(label, 4) * len(mesh.points) + mesh.tets.ravel())
+    keys = np.arange(len(mesh.points))  # every vertex has a tet: what one part has
+    if count > 1:
+        keys = np.unique(np.repeat(label, 4) * len(mesh.points) + mesh.tets.ravel())
     part, vertex = np.divmod(keys, len(mesh.points))
     number = np.bincount(part, minlength=count)
     points = mesh.points[vertex]

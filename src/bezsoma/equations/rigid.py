@@ -26,6 +26,7 @@ from bezsoma.equations.motions import SMALL, Motions, sentence, unwelded
 from bezsoma.equations.parts import Parts, parts_of
 from bezsoma.errors import InputError
 from bezsoma.mesh.control_net import ControlNet
+from bezsoma.mesh.topology import slices
 
 MOST_COUPLED = 200
 """Parts that hang together by edges and vertices and are looked at as one dense problem."""
@@ -97,9 +98,12 @@ Resisted = dict[int, Floats]
 def _resisted(net: ControlNet, held: Bools, parts: Parts) -> Resisted:
     """The equations of the prescribed components, part by part."""
     any_held: Bools = np.asarray(held.any(axis=1))
-    tet, local = np.nonzero(any_held[net.of_tet])
-    keys = np.unique(parts.label[tet] * net.count + net.of_tet[tet, local])
-    part, control = np.divmod(keys, net.count)
+    keys = [np.zeros(0, np.int64)]
+    for tets in slices(len(parts.label)):
+        of_tet = net.closure(3, tets)
+        tet, local = np.nonzero(any_held[of_tet])
+        keys.append(np.unique(parts.label[tets][tet] * net.count + of_tet[tet, local]))
+    part, control = np.divmod(np.unique(np.concatenate(keys)), net.count)
     found: Resisted = {}
     for rows in np.split(np.arange(len(part)), np.flatnonzero(np.diff(part)) + 1):
         if len(rows):

@@ -162,7 +162,7 @@ def surface_checked(name: str, load: Traction | Pressure, mesh: TetMesh) -> None
     if name not in mesh.surfaces:
         raise InputError(f"{kind}: {unknown('surface', name, mesh.surfaces, 'this mesh')}")
     if isinstance(load, Pressure):
-        inner = row_numbers(mesh.facets_of(name), mesh.boundary, len(mesh.points)) < 0
+        inner = row_numbers(mesh.facets_of(name), mesh.boundary) < 0
         if inner.any():
             raise InputError(
                 f"Pressure on {name!r}: {int(inner.sum())} of its {len(inner)} facets lie inside "

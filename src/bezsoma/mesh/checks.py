@@ -10,14 +10,15 @@ the check for rigid motions, which names the loose part.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from bezsoma.arrays import Bools, Floats, Ints, Numbers
+from bezsoma import _core
+from bezsoma.arrays import Floats, Int32s, Ints, Numbers
 from bezsoma.errors import MeshError
-from bezsoma.mesh.shape import FLAT, LARGEST, flat_tets, heights_and_lengths
-from bezsoma.mesh.topology import Simplices
+from bezsoma.mesh.shape import FLAT, LARGEST, Signs, flat_tets, heights_and_lengths
 
 
 def listed(numbers: npt.ArrayLike, first: int = 4) -> str:
@@ -74,13 +75,12 @@ def index_rows(given: npt.ArrayLike, width: int, count: int, what: str, of: str)
             f"{what}s have the shape {array.shape}; (n, {width}) is needed: "
             f"a row of {width} {of} numbers for each {what}"
         )
-    numbers = index_array(array, count, f"{what}s", of)
-    rows = np.sort(numbers, axis=1)
-    twice = np.flatnonzero((rows[:, 1:] == rows[:, :-1]).any(axis=1))
-    if len(twice):
+    rows = index_array(array, count, f"{what}s", of)
+    if _core.sort_rows(rows) >= 0:
+        twice = np.flatnonzero((rows[:, 1:] == rows[:, :-1]).any(axis=1))
         raise MeshError(
             f"{_many(twice, what)} {listed(twice)}: {what} {twice[0]} is "
-            f"{numbers[twice[0]].tolist()} and has the same {of} twice; remove it"
+            f"{array[twice[0]].tolist()} and has the same {of} twice; remove it"
         )
     return rows
 
@@ -95,8 +95,8 @@ def index_array(given: npt.ArrayLike, count: int, what: str, of: str) -> Ints:
             f"{what} hold numbers of type {array.dtype}{_fractions(array)}; {of} numbers are "
             f"whole numbers, 0 to {count - 1}: give an array of integers (.astype(int))"
         )
-    outside = (array < 0) | (array >= count)
-    if outside.any():
+    if array.min() < 0 or array.max() >= count:
+        outside = (array < 0) | (array >= count)
         rows = np.flatnonzero(outside.reshape(len(array), -1).any(axis=1))
         value = array[outside][0]
         one = " (numbers start at 0, not at 1)" if value == count else ""
@@ -104,7 +104,7 @@ def index_array(given: npt.ArrayLike, count: int, what: str, of: str) -> Ints:
             f"{what} name {of} {value} (in row {listed(rows)}), but there are {count} {of}s, "
             f"numbered 0 to {count - 1}{one}"
         )
-    return np.array(array, dtype=np.int64)
+    return np.array(array, dtype=np.int64, order="C")
 
 
 def region_names(given: Sequence[str]) -> tuple[str, ...]:
@@ -135,7 +135,7 @@ def region_array(given: npt.ArrayLike | None, tets: int, names: tuple[str, ...])
     return index_array(array, len(names), f"region numbers (regions: {list(names)})", "region")
 
 
-def shape(points: Floats, tets: Ints) -> Ints:
+def shape(points: Floats, tets: Ints) -> Signs:
     """The orientation (t,) of every tet, +1 or -1; flat ones are refused."""
     signs, flat = flat_tets(points, tets)
     bad = np.flatnonzero(flat)
@@ -151,45 +151,58 @@ def shape(points: Floats, tets: Ints) -> Ints:
     return signs
 
 
-def topology(faces: Simplices, pairs: Ints, tets: Ints, signs: Ints, names: Ints) -> None:
-    """Refuse tets listed twice, faces shared by three, and folds; `names` are point numbers."""
-    _listed_twice(faces, tets, names)
-    crowded = np.flatnonzero(faces.counts > 2)
+class Faces(NamedTuple):
+    """The tets (t, 4) of a mesh, its faces (f, 3), and which of them each tet has (t, 4)."""
+
+    tets: Ints
+    rows: Int32s
+    of_tet: Int32s
+
+
+def topology(mesh: Faces, signs: Signs, names: Ints) -> None:
+    """Say what is wrong where tets overlap: listed twice, three at a face, or folded.
+
+    `names` (v,) are the numbers of the points as the user gave them.
+    """
+    _listed_twice(mesh, names)
+    counts = np.bincount(mesh.of_tet.ravel())
+    order = np.argsort(mesh.of_tet.ravel(), kind="stable")  # what touches each face, face by face
+    ends = np.cumsum(counts)
+    crowded = np.flatnonzero(counts > 2)
     if len(crowded):
-        end = np.cumsum(faces.counts)[crowded[0]]
-        around = faces.incidences[end - faces.counts[crowded[0]] : end] // 4
+        around = order[ends[crowded[0]] - counts[crowded[0]] : ends[crowded[0]]] // 4
         raise MeshError(
-            f"the face with vertices {names[faces.rows[crowded[0]]].tolist()} is shared by "
+            f"the face with vertices {names[mesh.rows[crowded[0]]].tolist()} is shared by "
             f"{len(around)} tets ({listed(around)}){_others(crowded)}; a face separates at most "
             "two: tets overlap there, remove the wrong ones or mesh again"
         )
-    _folds(faces, pairs, tets, signs, names)
+    _folds(mesh, signs, order, ends[counts == 2], names)
 
 
-def _listed_twice(faces: Simplices, tets: Ints, names: Ints) -> None:
+def _listed_twice(mesh: Faces, names: Ints) -> None:
     """Equal rows have the same first face and the same last vertex."""
-    keys = faces.of_tet[:, 3] * (int(tets.max()) + 1) + tets[:, 3]
+    keys = mesh.of_tet[:, 3].astype(np.int64) * (int(mesh.tets.max()) + 1) + mesh.tets[:, 3]
     order = np.argsort(keys, kind="stable")
     same = np.flatnonzero(keys[order][1:] == keys[order][:-1])
     if len(same):
         first, again = order[same[0]], order[same[0] + 1]
         raise MeshError(
-            f"tets {first} and {again} are the same, vertices {names[tets[first]].tolist()}"
+            f"tets {first} and {again} are the same, vertices {names[mesh.tets[first]].tolist()}"
             f"{_others(same)}; a tet may be listed once only: remove the copies"
         )
 
 
-def _folds(faces: Simplices, pairs: Ints, tets: Ints, signs: Ints, names: Ints) -> None:
+def _folds(mesh: Faces, signs: Signs, order: Ints, ends: Ints, names: Ints) -> None:
     """Two tets on one side of their face: moving vertex i to the front gives the sign (-1)^i."""
     side = (signs[:, None] * np.array([1, -1, 1, -1])).ravel()
-    shared = np.flatnonzero(pairs[:, 1] >= 0)
-    ends = np.cumsum(faces.counts)[shared]
-    folded = shared[side[faces.incidences[ends - 1]] == side[faces.incidences[ends - 2]]]
+    one, other = order[ends - 2], order[ends - 1]
+    folded = np.flatnonzero(side[one] == side[other])
     if len(folded):
-        a, b = pairs[folded[0]]
+        a, b = one[folded[0]] // 4, other[folded[0]] // 4
+        face = mesh.rows[mesh.of_tet.ravel()[one[folded[0]]]]
         raise MeshError(
             f"tets {a} and {b} lie on the same side of the face they share, vertices "
-            f"{names[faces.rows[folded[0]]].tolist()}{_others(folded)}: the mesh is folded over "
+            f"{names[face].tolist()}{_others(folded)}: the mesh is folded over "
             "itself there; move the vertex that was pushed through, or mesh again"
         )
 
@@ -217,16 +230,19 @@ def one_namespace(**kinds: Mapping[str, object]) -> None:
             seen[name] = kind
 
 
-def members(found: Bools, rows: Ints, name: str, kind: str, why: str) -> None:
-    """Refuse an empty place, rows that are not in the mesh, and rows listed twice."""
+def members(found: Ints, rows: Ints, name: str, kind: str, why: str) -> None:
+    """Refuse an empty place, rows that are not in the mesh, and rows listed twice.
+
+    `found` (r,) is each row's number among the mesh's own, -1 where it is none of them.
+    """
     if not len(rows):
         raise MeshError(f"{kind} {name!r} is empty; leave it out or give it at least one row")
-    wrong = np.flatnonzero(~found)
+    wrong = np.flatnonzero(found < 0)
     if len(wrong):
         raise MeshError(
             f"{kind} {name!r}: row {listed(wrong)} (first: {rows[wrong[0]].tolist()}) {why}"
         )
-    _, counts = np.unique(rows, axis=0, return_counts=True)
+    _, counts = np.unique(found, return_counts=True)
     if (counts > 1).any():
         raise MeshError(
             f"{kind} {name!r}: {int((counts > 1).sum())} of its rows are listed more than once; "

@@ -17,16 +17,18 @@ from math import comb
 
 import numpy as np
 
-from bezsoma import bernstein
-from bezsoma.arrays import Floats, Ints, frozen
+from bezsoma import _core, bernstein
+from bezsoma.arrays import Floats, Int32s, Ints, frozen
 from bezsoma.errors import InputError
 from bezsoma.mesh.functions import Function, sampled
-from bezsoma.mesh.morton import morton_order
 from bezsoma.mesh.parts import inside, interpolation_inside, owners, rows_applied
 from bezsoma.mesh.tets import TetMesh
 from bezsoma.mesh.topology import numbers as numbers_among
+from bezsoma.mesh.topology import slices
 
 LARGEST_DEGREE = 10
+EDGES_OF_FACES = np.array([(3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3)])
+"""The local edges (01), (02), (12) of each local face of a tet."""
 CHUNK = 1 << 16
 """Entities handled at a time, so that scratch arrays stay small beside the answer."""
 
@@ -71,10 +73,10 @@ class ControlNet:
         """The number c of controls."""
         return sum(len(starts) * self.sizes[dim] for dim, starts in enumerate(self.starts))
 
-    @cached_property
+    @property
     def morton(self) -> Ints:
         """The numbers of the tets in the Morton order of their centroids, (t,)."""
-        return frozen(morton_order(self.mesh.points[self.mesh.tets].mean(axis=1)))
+        return self.mesh.morton
 
     @cached_property
     def starts(self) -> tuple[Ints, ...]:
@@ -83,22 +85,24 @@ class ControlNet:
         The run of entity i of dimension d is starts[d][i] + 0, 1, ..., sizes[d] - 1.  Dimensions
         whose entities hold no control inside (edges at degree 1, ...) are left out.
         """
-        dims = self._dims(3)
-        bases = np.cumsum([0, *(self._entities(dim) for dim in dims)])
-        touched = first_touches(
-            np.concatenate([self._parts(3, dim)[self.morton] + bases[dim] for dim in dims], axis=1)
-        )
-        sizes = np.repeat(self.sizes[: len(dims)], np.diff(bases))[touched]
-        starts = np.empty(bases[-1], dtype=np.int64)
-        starts[touched] = np.cumsum(sizes) - sizes
-        return tuple(frozen(part) for part in np.split(starts, bases[1:-1]))
+        mesh, dims = self.mesh, self._dims(3)
+        counts = [self._entities(dim) if dim in dims else 0 for dim in range(4)]
+        edges = mesh.edges_of_tet if 1 in dims else None
+        faces = mesh.faces_of_tet if 2 in dims else None
+        starts = _core.first_controls(self.morton, mesh.tets, edges, faces, counts, self.sizes)
+        return tuple(frozen(part) for part in np.split(starts, np.cumsum(counts)[: len(dims) - 1]))
 
-    def entities_of_tet(self) -> list[Ints]:
-        """The numbers of the vertices, edges, faces and interior of each tet, (t, 4) and so on.
+    def walked(self) -> Int32s:
+        """The first control of each vertex, edge, face and interior of each tet (t, e).
 
-        Only the kinds that hold controls inside, as in `starts`.
+        Only of the kinds that hold controls inside, as in `starts`; tets in the order `morton`.
         """
-        return [self._parts(3, dim) for dim in self._dims(3)]
+        parts = sum((4, 6, 4, 1)[: len(self._dims(3))])
+        first = np.empty((len(self.mesh.tets), parts), np.int32)
+        for part in slices(len(first)):
+            runs = self._starts_of(3, self.morton[part])
+            np.concatenate(runs, axis=1, out=first[part], casting="same_kind")
+        return first
 
     @cached_property
     def of_tet(self) -> Ints:
@@ -111,7 +115,7 @@ class ControlNet:
         points = np.empty((self.count, 3))
         for dim, numbers, own in self._runs():
             rows = bernstein.domain_points(self.degree, dim)[inside(self.degree, dim)]
-            points[own] = rows_applied(rows, self.mesh.points, self._parts(dim, 0)[numbers])
+            points[own] = rows_applied(rows, self.mesh.points, self._parts(dim, 0, numbers))
         return frozen(points)
 
     def closure(self, dim: int, numbers: Ints | slice = slice(None)) -> Ints:
@@ -121,8 +125,7 @@ class ControlNet:
         the entity's own multi-indices, so they hold its vertices, edges and so on as well.
         """
         part, rank = owners(self.degree, dim)
-        runs = [self.starts[d][self._parts(dim, d)[numbers]] for d in self._dims(dim)]
-        controls = np.concatenate(runs, axis=1)[:, part]
+        controls = np.concatenate(self._starts_of(dim, numbers), axis=1)[:, part]
         controls += rank
         return controls
 
@@ -135,7 +138,12 @@ class ControlNet:
         return self.closure(1, self.edge_numbers(edges))
 
     def of_facets(self, facets: Ints) -> Ints:
-        """The controls of each facet (f, m2), for facets (f, 3) with ascending vertices."""
+        """The controls of each facet (f, m2), for facets (f, 3) with ascending vertices.
+
+        Those of degree 1 are its vertices' own, so that nothing is looked up.
+        """
+        if self.degree == 1:
+            return self.of_vertices(facets)
         return self.closure(2, self.face_numbers(facets))
 
     def edge_numbers(self, edges: Ints) -> Ints:
@@ -146,13 +154,13 @@ class ControlNet:
         """The number of each facet (f, 3) in `mesh.all_faces`, (f,)."""
         return self._found("facet", facets, self.mesh.all_faces)
 
-    @cached_property
-    def edges_of_face(self) -> Ints:
-        """The numbers of the edges (01), (02), (12) of each face (f, 3)."""
-        edges = np.empty((len(self.mesh.all_faces), 3), dtype=np.int64)
-        for face, local in enumerate(((3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3))):
-            edges[self.mesh.faces_of_tet[:, face]] = self.mesh.edges_of_tet[:, local]
-        return frozen(edges)
+    def edges_of_faces(self, faces: Ints | slice) -> Int32s:
+        """The numbers of the edges (01), (02), (12) of faces with these numbers (f, 3)."""
+        mesh = self.mesh
+        tet = mesh.tets_of_face[faces, 0]
+        numbers = np.arange(len(mesh.all_faces))[faces]
+        local = (mesh.faces_of_tet[tet] == numbers[:, None]).argmax(axis=1)
+        return np.asarray(mesh.edges_of_tet[tet[:, None], EDGES_OF_FACES[local]])
 
     def of_place(self, name: str) -> Ints:
         """The controls on the closure of a named place, ascending (q,).
@@ -174,7 +182,7 @@ class ControlNet:
         if kind == "edge":
             return {0: vertices, 1: np.unique(self.edge_numbers(self.mesh.edges[name]))}
         faces = np.unique(self.face_numbers(self.mesh.surfaces[name]))
-        return {0: vertices, 1: np.unique(self.edges_of_face[faces]), 2: faces}
+        return {0: vertices, 1: np.unique(self.edges_of_faces(faces)), 2: faces}
 
     def interpolated(self, function: Function | Floats) -> Floats:
         """The controls (c, ...) of the field that takes the given values in all domain points.
@@ -230,16 +238,21 @@ class ControlNet:
             return len(self.mesh.tets if dim else self.mesh.points)
         return len(self.mesh.all_edges if dim == 1 else self.mesh.all_faces)
 
-    def _parts(self, dim: int, part: int) -> Ints:
-        """The numbers of the parts of dimension `part` of all entities of a dimension (q, r)."""
+    def _starts_of(self, dim: int, numbers: Ints | slice) -> list[Ints]:
+        """The first controls (q, r) of the parts of some entities, a list over `_dims(dim)`."""
+        return [self.starts[d][self._parts(dim, d, numbers)] for d in self._dims(dim)]
+
+    def _parts(self, dim: int, part: int, numbers: Ints | slice) -> Ints | Int32s:
+        """The numbers (q, r) of the parts of dimension `part` of some entities of a dimension."""
         mesh = self.mesh
         if dim == part:
-            return np.arange(self._entities(dim))[:, None]
+            return np.arange(self._entities(dim))[numbers, None]
         if part == 2:
-            return mesh.faces_of_tet
+            return mesh.faces_of_tet[numbers]
         if part == 1:
-            return mesh.edges_of_tet if dim == 3 else self.edges_of_face
-        return mesh.tets if dim == 3 else mesh.all_faces if dim == 2 else mesh.all_edges
+            return mesh.edges_of_tet[numbers] if dim == 3 else self.edges_of_faces(numbers)
+        rows = mesh.tets if dim == 3 else mesh.all_faces if dim == 2 else mesh.all_edges
+        return rows[numbers]
 
     def _runs(self, entities: Mapping[int, Ints] | None = None) -> Iterator[tuple[int, Ints, Ints]]:
         """Chunks of entities: dimension, numbers (q,), the controls inside them (size, q)."""
@@ -251,8 +264,8 @@ class ControlNet:
                 numbers = chosen[begin : begin + CHUNK]
                 yield dim, numbers, self.starts[dim][numbers] + np.arange(self.sizes[dim])[:, None]
 
-    def _found(self, what: str, rows: Ints, among: Ints) -> Ints:
-        found = numbers_among(np.asarray(rows), among, len(self.mesh.points))
+    def _found(self, what: str, rows: Ints, among: Int32s) -> Ints:
+        found = numbers_among(np.asarray(rows), among)
         missing = np.flatnonzero(found < 0)
         if len(missing):
             raise InputError(
@@ -260,18 +273,3 @@ class ControlNet:
                 f"({len(missing)} of {len(rows)} such); its vertices have to ascend"
             )
         return found
-
-
-def first_touches(walk: Ints) -> Ints:
-    """The distinct numbers in a walk, in the order in which they first occur in it.
-
-    Every number from 0 to the largest has to occur.
-
-    >>> first_touches(np.array([[2, 0], [2, 1]])).tolist()
-    [2, 0, 1]
-    """
-    walk = walk.ravel()
-    steps = np.arange(len(walk))
-    first = np.empty(walk.max() + 1, dtype=np.int64)
-    first[walk[::-1]] = steps[::-1]  # of equal indices the last to write stays: the earliest
-    return np.asarray(walk[first[walk] == steps])

@@ -156,7 +156,7 @@ def _wide(rows: Ints) -> Ints:
 
 
 def _among(rows: Ints, members: Ints, count: int) -> Bools:
-    return numbers(rows, np.unique(_wide(members), axis=0), count) >= 0
+    return numbers(rows, np.unique(_wide(members), axis=0)) >= 0
 
 
 def _turned(mesh: TetMesh, kind: str, rows: Ints) -> Ints:

@@ -58,12 +58,15 @@ def read_npz(
 
 
 def write_npz(file: BinaryIO, mesh: TetMesh) -> None:
-    """Our own form of a mesh, compressed; the same mesh gives the same bytes."""
+    """Our own form of a mesh; the same mesh gives the same bytes.
+
+    Not compressed: that took longer than a solve, for coordinates that hardly shrink.
+    """
     arrays: dict[str, npt.ArrayLike] = {
         "bezsoma_mesh": VERSION,
         "points": mesh.points,
-        "tets": mesh.tets,
-        "region": mesh.region,
+        "tets": mesh.tets.astype(np.int32),
+        "region": mesh.region.astype(np.min_scalar_type(len(mesh.regions))),
         "regions": np.array(mesh.regions),
     }
     kinds = {"surface": mesh.surfaces, "edge": mesh.edges, "vertex": mesh.vertices}
@@ -73,7 +76,7 @@ def write_npz(file: BinaryIO, mesh: TetMesh) -> None:
         arrays[f"{kind}_names"] = np.array(list(places), dtype=np.str_)
         arrays[f"{kind}_sizes"] = np.array([len(part) for part in rows], dtype=np.int64)
         arrays[f"{kind}_rows"] = np.concatenate([none, *rows])
-    np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
+    np.savez(file, **arrays)  # type: ignore[arg-type]
 
 
 def _arrays(path: Path) -> dict[str, Numbers]:

@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from bezsoma import bernstein
-from bezsoma.arrays import Floats, Ints, frozen
+from bezsoma.arrays import Floats, Int32s, Ints, frozen
 from bezsoma.mesh.topology import EDGES, FACES
 
 PARTS: tuple[tuple[tuple[int, ...], ...], ...] = (
@@ -65,7 +65,7 @@ def interpolation_inside(degree: int, dim: int) -> Floats:
     return frozen(bernstein.interpolation(degree, dim)[inside(degree, dim)])
 
 
-def rows_applied(rows: Floats, values: Floats, closures: Ints) -> Floats:
+def rows_applied(rows: Floats, values: Floats, closures: Ints | Int32s) -> Floats:
     """The rows (r, m) applied to the values (c, ...) on each closure (q, m): (r, q, ...)."""
     local = values[closures.T]
     return (rows @ local.reshape(len(local), -1)).reshape(len(rows), *local.shape[1:])

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from bezsoma.arrays import Bools, Floats, Ints
+from bezsoma.arrays import Bools, Floats, Int32s, Ints, frozen
 from bezsoma.errors import MeshError
 from bezsoma.mesh.checks import index_array, index_rows, listed, members
 from bezsoma.mesh.topology import numbers
@@ -18,29 +18,34 @@ NEAR = 1e-6
 """How near a vertex must lie to a stated point or line, as a part of the mesh's extent."""
 
 
-def facets_given(name: str, given: npt.ArrayLike, count: int, faces: Ints) -> Ints:
-    """The facets (f, 3) of a surface, ascending; each must be a face of a tet."""
-    rows = index_rows(given, 3, count, f"facet of surface {name!r}", "point")
-    found = _found(rows, faces, count)
-    members(found, rows, name, "surface", "is no face of a tet; a surface is made of tets' faces")
-    return rows
+def facets_given(name: str, given: npt.ArrayLike, renumbered: Ints, faces: Int32s) -> Ints:
+    """The facets (f, 3) of a surface, ascending; each must be a face of a tet.
+
+    What is given counts the user's points, and so do messages; `renumbered` (points,) turns them
+    into vertices of the mesh, in the same order, -1 where no tet has one.
+    """
+    rows = index_rows(given, 3, len(renumbered), f"facet of surface {name!r}", "point")
+    why = "is no face of a tet; a surface is made of tets' faces"
+    members(numbers(renumbered[rows], faces), rows, name, "surface", why)
+    return frozen(renumbered[rows])
 
 
-def edges_given(name: str, given: npt.ArrayLike, count: int, edges: Ints) -> Ints:
+def edges_given(name: str, given: npt.ArrayLike, renumbered: Ints, edges: Int32s) -> Ints:
     """The mesh edges (e, 2) of an edge place, ascending; each must be an edge of a tet."""
-    rows = index_rows(given, 2, count, f"edge of {name!r}", "point")
-    members(_found(rows, edges, count), rows, name, "edge place", "is no edge of a tet")
-    return rows
+    rows = index_rows(given, 2, len(renumbered), f"edge of {name!r}", "point")
+    found = numbers(renumbered[rows], edges)
+    members(found, rows, name, "edge place", "is no edge of a tet")
+    return frozen(renumbered[rows])
 
 
-def vertices_given(name: str, given: npt.ArrayLike, used: Bools) -> Ints:
+def vertices_given(name: str, given: npt.ArrayLike, renumbered: Ints) -> Ints:
     """The vertices (k,) of a vertex place, ascending; each must belong to a tet."""
     array = np.asarray(given)
     if array.ndim != 1:
         raise MeshError(f"vertices of {name!r} have the shape {array.shape}; (k,) is needed")
-    rows = np.sort(index_array(array, len(used), f"vertices of {name!r}", "point"))
-    members(used[rows], rows[:, None], name, "vertex place", "is a point that no tet uses")
-    return rows
+    rows = np.sort(index_array(array, len(renumbered), f"vertices of {name!r}", "point"))
+    members(renumbered[rows], rows[:, None], name, "vertex place", "is a point that no tet uses")
+    return frozen(renumbered[rows])
 
 
 def facets_where(
@@ -64,7 +69,7 @@ def facets_where(
     return rows
 
 
-def edges_along(line: Floats, points: Floats, edges: Ints, name: str) -> Ints:
+def edges_along(line: Floats, points: Floats, edges: Int32s, name: str) -> Ints:
     """The mesh edges (e, 2) that make up a polyline through points (k, 3) in mm."""
     if line.ndim != 2 or line.shape[1] != 3 or len(line) < 2 or not np.isfinite(line).all():
         raise MeshError(
@@ -75,14 +80,14 @@ def edges_along(line: Floats, points: Floats, edges: Ints, name: str) -> Ints:
     return np.asarray(np.unique(np.concatenate(parts), axis=0))
 
 
-def _edges_between(a: Floats, b: Floats, points: Floats, edges: Ints, name: str) -> Ints:
+def _edges_between(a: Floats, b: Floats, points: Floats, edges: Int32s, name: str) -> Ints:
     near, length = NEAR * _extent(points), float(np.linalg.norm(b - a))
     if length <= near:
         raise MeshError(f"the line of {name!r} stands still at {a.tolist()}; remove the repetition")
     along = (points - a) @ (b - a) / length
     off = np.linalg.norm(points - a - np.outer(along / length, b - a), axis=1)
     on = (off <= near) & (along >= -near) & (along <= length + near)
-    rows: Ints = edges[on[edges].all(axis=1)]
+    rows: Ints = edges[on[edges].all(axis=1)].astype(np.int64)
     covered = float(np.abs(np.diff(along[rows], axis=1)).sum())
     if covered < length - 2 * near:
         raise MeshError(
@@ -113,10 +118,10 @@ def vertices_at(places: Floats, points: Floats, name: str) -> Ints:
     return np.array(found, np.int64)
 
 
-def face_numbers(facets: npt.ArrayLike, faces: Ints, count: int) -> Ints:
+def face_numbers(facets: npt.ArrayLike, faces: Int32s, count: int) -> Ints:
     """The number (f,) of each facet among the faces of the mesh."""
     rows = index_rows(facets, 3, count, "facet", "vertex")
-    found = numbers(rows, faces, count) if len(rows) else np.zeros(0, np.int64)
+    found = numbers(rows, faces)
     wrong = np.flatnonzero(found < 0)
     if len(wrong):
         raise MeshError(
@@ -124,10 +129,6 @@ def face_numbers(facets: npt.ArrayLike, faces: Ints, count: int) -> Ints:
             "this mesh; take facets from `surfaces`, `boundary` or `all_faces`"
         )
     return found
-
-
-def _found(rows: Ints, among: Ints, count: int) -> Bools:
-    return numbers(rows, among, count) >= 0 if len(rows) else np.zeros(0, bool)
 
 
 def _extent(points: Floats) -> float:

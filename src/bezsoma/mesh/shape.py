@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether a tet is flat and which way round it is, decided without rounding errors.
 
-Floating-point numbers decide nearly all tets: their determinant is larger than its error bound.
-The few that are near zero are decided again in fractions, so a needle is not mistaken for a flat
-tet, nor its orientation guessed.
+Floating-point numbers decide nearly all tets, in the core: their determinant is larger than its
+error bound. The few that are near zero are looked at again here, in fractions where need be, so a
+needle is not mistaken for a flat tet, nor its orientation guessed.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 import numpy as np
+import numpy.typing as npt
 
+from bezsoma import _core
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.mesh.topology import EDGES, FACES, cross, determinants
 
@@ -19,6 +21,7 @@ FLAT = 1e-10
 """A tet is flat where its least height is below this part of its longest edge (no unit)."""
 LARGEST = 1e70
 """Lengths above this or below its inverse (mm) over- or underflow in the fourth power."""
+Signs = npt.NDArray[np.int8]
 _EPS = float(np.finfo(float).eps)
 _CHUNK = 1 << 15
 
@@ -37,7 +40,7 @@ def heights_and_lengths(corners: Floats) -> tuple[Floats, Floats]:
     return np.abs(determinants(corners)) / np.where(area > 0, area, 1.0), length
 
 
-def flat_tets(points: Floats, tets: Ints) -> tuple[Ints, Bools]:
+def flat_tets(points: Floats, tets: Ints) -> tuple[Signs, Bools]:
     """The orientation (t,), +1 or -1, of tets (t, 4), and which of them are flat (t,).
 
     Flat: the least height is below `FLAT` of the longest edge, or within the rounding of the
@@ -46,20 +49,25 @@ def flat_tets(points: Floats, tets: Ints) -> tuple[Ints, Bools]:
 
     >>> thin = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1e-8]])
     >>> flat_tets(thin, np.array([[0, 1, 2, 3], [0, 2, 1, 3]]))
-    (array([ 1, -1]), array([False, False]))
+    (array([ 1, -1], dtype=int8), array([False, False]))
     >>> flat_tets(1e-6 * thin * [1, 1, 1e-3], np.array([[0, 1, 2, 3]]))[1]
     array([ True])
     """
-    parts = [_signs(points[tets[start : start + _CHUNK]]) for start in range(0, len(tets), _CHUNK)]
-    return np.concatenate([sign for sign, _ in parts]), np.concatenate([flat for _, flat in parts])
+    sign = _core.orientations(points, tets, FLAT, LARGEST)
+    flat = np.zeros(len(tets), bool)
+    doubtful = np.flatnonzero(sign == 0)
+    for start in range(0, len(doubtful), _CHUNK):
+        part = doubtful[start : start + _CHUNK]
+        sign[part], flat[part] = _signs(points[tets[part]])
+    return sign, flat
 
 
-def _signs(corners: Floats) -> tuple[Ints, Bools]:
+def _signs(corners: Floats) -> tuple[Signs, Bools]:
     det, bound = _bounded(corners)
     length, area = _lengths_and_areas(corners)
     least = np.maximum(FLAT * length, 4 * _EPS * np.abs(corners).max(axis=(1, 2))) * area
     flat = (np.abs(det) + bound <= least) | (length * LARGEST < 1)
-    sign = np.sign(det).astype(np.int64)
+    sign = np.sign(det).astype(np.int8)
     for tet in np.flatnonzero(~flat & (np.abs(det) <= least + bound)):
         exact = _exact(corners[tet])
         flat[tet] = abs(exact) <= Fraction(least[tet])

@@ -11,19 +11,19 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from bezsoma.arrays import Bools, Floats, Ints, frozen
+from bezsoma import _core
+from bezsoma.arrays import Bools, Floats, Int32s, Ints, frozen
 from bezsoma.errors import InputError, MeshError, unknown
 from bezsoma.mesh import checks, places
+from bezsoma.mesh.morton import morton_order
 from bezsoma.mesh.topology import (
     EDGES,
     FACES,
     cross,
     determinants,
-    neighbours,
     simplices,
+    slices,
 )
 
 _NONE: Mapping[str, npt.ArrayLike] = MappingProxyType({})
@@ -64,6 +64,8 @@ class TetMesh:
     """Mesh edges (e, 2) of each named edge place, rows ascending."""
     vertices: Mapping[str, Ints]
     """Vertex numbers (k,) of each named vertex place, ascending."""
+    tets_of_face: Int32s
+    """The tets (f, 2) at each of `all_faces`, the lower number first, -1 for no second."""
     dropped: int
     """How many of the points given belonged to no tet."""
 
@@ -87,17 +89,19 @@ class TetMesh:
         renumbered = np.cumsum(used) - 1
         self._hold(
             points=frozen(given if used.all() else given[used]),
-            tets=frozen(renumbered[rows]),
+            tets=frozen(rows if used.all() else renumbered[rows]),
             region=frozen(numbers),
             regions=names,
             dropped=int((~used).sum()),
         )
-        kept = np.flatnonzero(used)
-        faces = simplices(self.tets, FACES, len(self.points))
-        self._hold(_faces=(faces.rows, faces.of_tet))
-        checks.topology(faces, self.tets_of_face, self.tets, signs, kept)
+        pairs, sound = _core.neighbours(self.faces_of_tet, len(self.all_faces), signs)
+        self._hold(tets_of_face=frozen(pairs))
+        if not sound:
+            faces = checks.Faces(self.tets, self.all_faces, self.faces_of_tet)
+            checks.topology(faces, signs, np.flatnonzero(used))
         checks.one_namespace(surface=surfaces, edge=edges, vertex=vertices)
-        self._hold_places(surfaces, edges, vertices, used, renumbered)
+        self._hold_places(surfaces, edges, vertices, np.where(used, renumbered, -1))
+        del self.__dict__["_faces"]  # quickly found again; held, they would be much of the memory
 
     def _hold(self, **values: Any) -> None:
         for name, value in values.items():
@@ -108,20 +112,16 @@ class TetMesh:
         surfaces: Mapping[str, npt.ArrayLike],
         edges: Mapping[str, npt.ArrayLike],
         vertices: Mapping[str, npt.ArrayLike],
-        used: Bools,
         renumbered: Ints,
     ) -> None:
         """Places come in the given numbering, where messages speak; they are kept in ours."""
-        count, kept = len(used), np.flatnonzero(used)
         of_faces, of_edges, of_vertices = {}, {}, {}
         for name, given in surfaces.items():
-            rows = places.facets_given(name, given, count, kept[self.all_faces])
-            of_faces[name] = frozen(renumbered[rows])
+            of_faces[name] = places.facets_given(name, given, renumbered, self.all_faces)
         for name, given in edges.items():
-            rows = places.edges_given(name, given, count, kept[self.all_edges])
-            of_edges[name] = frozen(renumbered[rows])
+            of_edges[name] = places.edges_given(name, given, renumbered, self.all_edges)
         for name, given in vertices.items():
-            of_vertices[name] = frozen(renumbered[places.vertices_given(name, given, used)])
+            of_vertices[name] = places.vertices_given(name, given, renumbered)
         self._hold(
             surfaces=MappingProxyType(of_faces),
             edges=MappingProxyType(of_edges),
@@ -145,7 +145,10 @@ class TetMesh:
     @cached_property
     def volumes(self) -> Floats:
         """The volume (t,) of each tet in mm3, positive."""
-        return frozen(np.abs(determinants(self.points[self.tets])) / 6.0)
+        found = np.empty(len(self.tets))
+        for part in slices(len(self.tets)):
+            found[part] = np.abs(determinants(self.points[self.tets[part]])) / 6.0
+        return frozen(found)
 
     @cached_property
     def gradients(self) -> Floats:
@@ -167,6 +170,14 @@ class TetMesh:
         found[:, 1:] /= np.einsum("td,td->t", a, found[:, 1])[:, None, None]
         found[:, 0] = -found[:, 1:].sum(axis=1)
         return frozen(found)
+
+    @cached_property
+    def morton(self) -> Ints:
+        """The numbers of the tets in the Morton order of their centroids, (t,)."""
+        centroids = np.empty((len(self.tets), 3))
+        for part in slices(len(self.tets)):
+            centroids[part] = self.points[self.tets[part]].mean(axis=1)
+        return frozen(morton_order(centroids))
 
     @property
     def oriented_tets(self) -> Ints:
@@ -209,7 +220,7 @@ class TetMesh:
         One between two tets is turned out of the tet with the lower number.
         """
         faces = self._face_numbers(facets)
-        rows = self.all_faces[faces]
+        rows = self.all_faces[faces].astype(np.int64)
         a, b, c = (self.points[rows[:, i]] for i in range(3))
         inward = np.einsum("fd,fd->f", cross(b - a, c - a), self._normals(faces)) < 0
         return np.where(inward[:, None], rows[:, [0, 2, 1]], rows)
@@ -230,62 +241,51 @@ class TetMesh:
 
     # Topology -------------------------------------------------------------------------------
 
-    # Who shares a simplex is asked while the mesh is checked, and not kept: memory counts.
+    # 32 bits: at degree 1 these arrays are a good part of what a problem takes.
 
     @cached_property
-    def _edges(self) -> tuple[Ints, Ints]:
-        found = simplices(self.tets, EDGES, len(self.points))
-        return found.rows, found.of_tet
+    def _edges(self) -> tuple[Int32s, Int32s]:
+        return simplices(self.tets, EDGES, len(self.points))
 
     @cached_property
-    def _faces(self) -> tuple[Ints, Ints]:
-        found = simplices(self.tets, FACES, len(self.points))
-        return found.rows, found.of_tet
+    def _faces(self) -> tuple[Int32s, Int32s]:
+        return simplices(self.tets, FACES, len(self.points))
 
     @property
-    def all_edges(self) -> Ints:
+    def all_edges(self) -> Int32s:
         """Every edge (e, 2) once, rows ascending, in lexicographic order."""
         return self._edges[0]
 
     @property
-    def all_faces(self) -> Ints:
+    def all_faces(self) -> Int32s:
         """Every face (f, 3) once, rows ascending, in lexicographic order."""
         return self._faces[0]
 
     @property
-    def edges_of_tet(self) -> Ints:
+    def edges_of_tet(self) -> Int32s:
         """The edges (t, 6) of each tet, numbers into `all_edges`: 01, 02, 03, 12, 13, 23."""
         return self._edges[1]
 
     @property
-    def faces_of_tet(self) -> Ints:
+    def faces_of_tet(self) -> Int32s:
         """The faces (t, 4) of each tet, numbers into `all_faces`: face i is opposite vertex i."""
         return self._faces[1]
 
     @cached_property
-    def tets_of_face(self) -> Ints:
-        """The tets (f, 2) at each face, the lower number first, -1 where there is no second."""
-        return neighbours(self.faces_of_tet, len(self.all_faces))
-
-    @cached_property
     def boundary(self) -> Ints:
         """The facets (b, 3) that only one tet has, in lexicographic order."""
-        return frozen(self.all_faces[self.tets_of_face[:, 1] < 0])
+        return frozen(self.all_faces[self.tets_of_face[:, 1] < 0].astype(np.int64))
 
     def components(self) -> Ints:
         """The part (t,) that each tet belongs to, 0, 1, ...; parts hang together by faces.
 
         Tets that share only a vertex or an edge are hinges, not one part.
         """
-        shared = self.tets_of_face[self.tets_of_face[:, 1] >= 0]
-        graph = coo_array(
-            (np.ones(len(shared), bool), (shared[:, 0], shared[:, 1])), (len(self.tets),) * 2
-        )
-        return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+        return _core.components(self.tets_of_face, len(self.tets))
 
     def tets_of_facets(self, facets: npt.ArrayLike) -> Ints:
         """The tet (f,) that has each facet (f, 3); of two, the one with the lower number."""
-        return np.asarray(self.tets_of_face[self._face_numbers(facets), 0])
+        return np.asarray(self.tets_of_face[self._face_numbers(facets), 0], np.int64)
 
     def _face_numbers(self, facets: npt.ArrayLike) -> Ints:
         return places.face_numbers(facets, self.all_faces, len(self.points))
@@ -330,7 +330,7 @@ class TetMesh:
         """
         if callable(facets):
             facets = places.facets_where(facets, self.points, self.boundary, name)
-        rows = places.facets_given(name, facets, len(self.points), self.all_faces)
+        rows = places.facets_given(name, facets, np.arange(len(self.points)), self.all_faces)
         return self._with("surface", name, rows)
 
     def with_edges(self, name: str, line: npt.ArrayLike) -> TetMesh:
@@ -343,7 +343,7 @@ class TetMesh:
             rows = given
         else:
             rows = places.edges_along(given.astype(float), self.points, self.all_edges, name)
-        rows = places.edges_given(name, rows, len(self.points), self.all_edges)
+        rows = places.edges_given(name, rows, np.arange(len(self.points)), self.all_edges)
         return self._with("edge", name, rows)
 
     def with_vertices(
@@ -358,8 +358,8 @@ class TetMesh:
         if places_given.size:
             found = places.vertices_at(places_given, self.points, name)
         known = checks.index_array(numbers, len(self.points), f"vertices of {name!r}", "vertex")
-        used = np.ones(len(self.points), bool)
-        rows = places.vertices_given(name, np.concatenate([found, known.reshape(-1)]), used)
+        chosen = np.concatenate([found, known.reshape(-1)])
+        rows = places.vertices_given(name, chosen, np.arange(len(self.points)))
         return self._with("vertex", name, rows)
 
     def _with(self, kind: str, name: str, rows: Ints) -> TetMesh:

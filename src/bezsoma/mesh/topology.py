@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who touches whom: faces and edges of tets, by sorting one integer key a row.
+"""Who touches whom: faces and edges of tets.
 
 Rows of vertex numbers are ascending throughout, so equal simplices are equal rows and there is
 no orientation to compare.
@@ -7,11 +7,12 @@ no orientation to compare.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
 
 import numpy as np
 
-from bezsoma.arrays import Floats, Ints, frozen
+from bezsoma import _core
+from bezsoma.arrays import Floats, Int32s, Ints, frozen
 
 EDGES = ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))
 """The local edges of a tet, in the order of `edges_of_tet`."""
@@ -20,18 +21,13 @@ FACES = ((1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))
 _KEYS = 2**62
 
 
-@dataclass(frozen=True, eq=False)
-class Simplices:
-    """The distinct edges or faces of a mesh, and which of them each tet has."""
+def slices(count: int, size: int = 1 << 15) -> Iterator[slice]:
+    """Runs of `size` rows that cover `count`: scratch arrays stay small, and near the processor.
 
-    rows: Ints
-    """(s, k) vertex numbers, rows ascending and in lexicographic order."""
-    of_tet: Ints
-    """(t, 6) or (t, 4) numbers into `rows`, local order `EDGES` or `FACES`."""
-    counts: Ints
-    """(s,) how many tets share each."""
-    incidences: Ints
-    """(6 t,) or (4 t,) positions in `of_tet` raveled, sorted by the number found there."""
+    >>> list(slices(5, 3))
+    [slice(0, 3, None), slice(3, 6, None)]
+    """
+    return (slice(start, start + size) for start in range(0, count, size))
 
 
 def packed(rows: Ints, count: int) -> Ints:
@@ -58,58 +54,31 @@ def packed(rows: Ints, count: int) -> Ints:
     return key
 
 
-def simplices(tets: Ints, local: tuple[tuple[int, ...], ...], count: int) -> Simplices:
+def simplices(
+    tets: Ints, local: tuple[tuple[int, ...], ...], count: int
+) -> tuple[Int32s, Int32s]:
     """The distinct simplices that `local` (`EDGES` or `FACES`) cuts out of ascending tets (t, 4).
 
-    A tet alone has four faces, each its own; Euler's relation holds for the ball it is:
+    Their rows (s, k), ascending and in lexicographic order, and the numbers (t, 6) or (t, 4) of
+    those that each tet has. A tet alone has four faces, each its own; Euler's relation holds for
+    the ball that two make:
 
     >>> tets = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])
-    >>> faces, edges = simplices(tets, FACES, 5), simplices(tets, EDGES, 5)
-    >>> 5 - len(edges.rows) + len(faces.rows) - len(tets)
-    1
+    >>> (faces, of_tet), (edges, _) = simplices(tets, FACES, 5), simplices(tets, EDGES, 5)
+    >>> 5 - len(edges) + len(faces) - len(tets), of_tet.tolist()
+    (1, [[3, 2, 1, 0], [6, 5, 4, 3]])
     """
-    every = tets[:, np.array(local)].reshape(-1, len(local[0]))
-    keys = packed(every, count)
-    order = np.argsort(keys, kind="stable")
-    ordered = keys[order]
-    starts = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
-    counts = np.diff(np.concatenate([starts, [len(keys)]]))
-    of_tet = np.empty(len(keys), np.int64)
-    of_tet[order] = np.repeat(np.arange(len(starts)), counts)
-    return Simplices(
-        frozen(every[order[starts]]),
-        frozen(of_tet.reshape(len(tets), len(local))),
-        frozen(counts),
-        frozen(order),
-    )
+    rows, of_tet = _core.simplices(tets, count, len(local[0]))
+    return frozen(rows), frozen(of_tet)
 
 
-def neighbours(faces_of_tet: Ints, faces: int) -> Ints:
-    """The two tets at each of the faces (faces, 2), the lower number first; -1 where none is.
-
-    >>> found = simplices(np.array([[0, 1, 2, 3], [1, 2, 3, 4]]), FACES, 5)
-    >>> neighbours(found.of_tet, len(found.rows)).tolist()
-    [[0, -1], [0, -1], [0, -1], [0, 1], [1, -1], [1, -1], [1, -1]]
-    """
-    flat = faces_of_tet.ravel()
-    tets = np.arange(len(flat)) // 4
-    pair = np.empty((faces, 2), np.int64)
-    pair[flat, 1] = tets  # of several writers the last one stays
-    pair[flat[::-1], 0] = tets[::-1]
-    pair[pair[:, 0] == pair[:, 1], 1] = -1
-    return frozen(pair)
-
-
-def numbers(rows: Ints, among: Ints, count: int) -> Ints:
+def numbers(rows: Ints, among: Ints | Int32s) -> Ints:
     """The number (r,) of each ascending row in the lexicographic list `among`; -1 where none.
 
-    >>> numbers(np.array([[1, 2], [0, 3]]), np.array([[0, 1], [1, 2], [2, 3]]), 4)
+    >>> numbers(np.array([[1, 2], [0, 3]]), np.array([[0, 1], [1, 2], [2, 3]]))
     array([ 1, -1])
     """
-    keys = packed(np.concatenate([among, rows]), count)
-    known, wanted = keys[: len(among)], keys[len(among) :]
-    place = np.minimum(np.searchsorted(known, wanted), len(known) - 1)
-    return np.where(known[place] == wanted, place, -1)
+    return _core.numbers_among(np.ascontiguousarray(rows), among)
 
 
 def cross(a: Floats, b: Floats) -> Floats:

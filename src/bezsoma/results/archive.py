@@ -48,11 +48,11 @@ def write_fields(folder: Path, displacement: Field) -> None:
     """Write `mesh.npz` and `displacement.npz` into a folder."""
     net = displacement.net
     write_mesh(folder / MESH, net.mesh)
-    np.savez_compressed(
+    np.savez(
         folder / DISPLACEMENT,
         notice=np.str_(NOTICE),
         degree=np.int64(net.degree),
-        of_tet=net.of_tet,
+        of_tet=net.of_tet.astype(np.int32),
         controls=displacement.controls,
     )
 

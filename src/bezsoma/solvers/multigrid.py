@@ -31,12 +31,13 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     vertices = net if net.degree == 1 else ControlNet(net.mesh, 1)
     held_vertices = np.empty((vertices.count, 3), dtype=bool)
     held_vertices[vertices.starts[0]] = held[net.starts[0]]
-    corners = vertices.starts[0][net.mesh.tets[net.morton]].astype(np.int32)
     places = np.empty((vertices.count, 3))
     places[vertices.starts[0]] = net.mesh.points
     # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
     stiff = float(np.abs(operator.lame).max() * np.cbrt(net.mesh.volumes.mean()))
-    walk = operator.walk(stiff)
+    first = net.walked()
+    corners = first if net.degree == 1 else vertices.walked()
+    walk = operator.walk(stiff, first)
     return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
 
 
