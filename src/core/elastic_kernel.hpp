@@ -13,6 +13,7 @@
 // diagonal scaling a level; all a_j > 0, so nothing cancels and float32 is safe.
 #pragma once
 
+#include "kernels.hpp"
 #include "tet_controls.hpp"
 
 #ifndef BEZSOMA_ISA
@@ -21,6 +22,7 @@
 
 /// Loops over the controls of degrees up to this one are written out for the compiler.
 #define BEZSOMA_UNROLL 2
+#define BEZSOMA_LADDER 4
 
 namespace bezsoma::BEZSOMA_ISA {
 
@@ -44,6 +46,21 @@ template <class T, int lanes> BEZSOMA_INLINE void store(T *to, Lanes<T, lanes> v
 
 // ---------------------------------------------------------------- loops over controls of a tet
 
+/// Positions of b + e_1 and b + e_2 in degree m + 1, for each b of degree m.
+template <int m> struct Above {
+    int first[controls(m)] = {}, second[controls(m)] = {};
+    constexpr Above() {
+        for (int s3 = 0, p = 0; s3 <= m; ++s3)
+            for (int s2 = 0; s2 <= s3; ++s2)
+                for (int s1 = 0; s1 <= s2; ++s1, ++p) {
+                    first[p] = position(s3 + 1, s2, s1);
+                    second[p] = position(s3 + 1, s2 + 1, s1);
+                }
+    }
+};
+
+template <int m> inline constexpr Above<m> above{};
+
 /// Calls f(p, p1, p2, p3) for every control b of degree m: p is the position of b and of b + e_0,
 /// p1, p2, p3 those of b + e_1, b + e_2, b + e_3 in degree m + 1. Unrolled where that is small.
 template <int m, int s3 = 0, int s2 = 0, int s1 = 0, class F>
@@ -58,17 +75,12 @@ BEZSOMA_INLINE void each_unrolled(F &&f) {
         each_unrolled<m, s3 + 1, 0, 0>(f);
 }
 
-template <int m, class F> BEZSOMA_INLINE void each_control(F &&f) {
-    if constexpr (m <= BEZSOMA_UNROLL) {
+template <int m, int unrolled = BEZSOMA_UNROLL, class F> BEZSOMA_INLINE void each_control(F &&f) {
+    if constexpr (m <= unrolled) {
         each_unrolled<m>(f);
     } else {
-        int p = 0;
-        for (int s3 = 0; s3 <= m; ++s3) {
-            const int layer = (s3 + 1) * (s3 + 2) / 2;
-            for (int s2 = 0; s2 <= s3; ++s2)
-                for (int s1 = 0; s1 <= s2; ++s1, ++p)
-                    f(p, p + layer, p + layer + s2 + 1, p + layer + s2 + 2);
-        }
+        for (int p = 0; p < controls(m); ++p)
+            f(p, above<m>.first[p], above<m>.second[p], above<m>.second[p] + 1);
     }
 }
 
@@ -107,23 +119,57 @@ template <int m> struct LadderScales {
 
 template <int m> inline constexpr LadderScales<m> ladder_scales{};
 
+/// y of degree j becomes scale y + S lower, where S is the elevation of the scaled basis: every
+/// control takes what it shares with up to four below, in a tree, so that sums do not wait.
+template <class T, int lanes, int j, int s3 = 0, int s2 = 0, int s1 = 0>
+BEZSOMA_INLINE void elevated(Lanes<T, lanes> *y, const Lanes<T, lanes> *lower, const double *scale) {
+    constexpr int p = position(s3, s2, s1);
+    constexpr bool has[4] = {s3 < j, s2 < s3, s1 < s2, s1 > 0};
+    constexpr int below[4] = {position(s3, s2, s1), position(s3 - 1, s2, s1),
+                              position(s3 - 1, s2 - 1, s1), position(s3 - 1, s2 - 1, s1 - 1)};
+    Lanes<T, lanes> sum = y[p] * static_cast<T>(scale[p]), other;
+    if constexpr (has[0])
+        sum += lower[below[0]];
+    if constexpr (has[1])
+        sum += lower[below[1]];
+    if constexpr (has[2] && has[3])
+        other = lower[below[2]] + lower[below[3]];
+    else if constexpr (has[2])
+        other = lower[below[2]];
+    else if constexpr (has[3])
+        other = lower[below[3]];
+    if constexpr (has[2] || has[3])
+        sum += other;
+    y[p] = sum;
+    if constexpr (s1 < s2)
+        elevated<T, lanes, j, s3, s2, s1 + 1>(y, lower, scale);
+    else if constexpr (s2 < s3)
+        elevated<T, lanes, j, s3, s2 + 1, 0>(y, lower, scale);
+    else if constexpr (s3 < j)
+        elevated<T, lanes, j, s3 + 1, 0, 0>(y, lower, scale);
+}
+
 /// The levels below j of the ladder: y of degree j comes in, and goes out as
 /// level_j y + S (ladder of S^T y), where S is the elevation of the scaled basis.
 template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, lanes> *y) {
     constexpr int first = combinations(j + 3, 4);
     if constexpr (j > 0) {
         Lanes<T, lanes> lower[controls(j - 1)];
-        each_control<j - 1>(
+        each_control<j - 1, BEZSOMA_LADDER>(
             [&](int p, int p1, int p2, int p3) { lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]); });
         ladder<m, j - 1, T, lanes>(lower);
+        if constexpr (j - 1 <= BEZSOMA_LADDER) {
+            elevated<T, lanes, j>(y, lower, ladder_scales<m>.level + first);
+        } else {
         for (int p = 0; p < controls(j); ++p)
             y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
-        each_control<j - 1>([&](int p, int p1, int p2, int p3) {
+        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) {
             y[p] += lower[p];
             y[p1] += lower[p];
             y[p2] += lower[p];
             y[p3] += lower[p];
         });
+}
     } else {
         y[0] *= static_cast<T>(ladder_scales<m>.level[0]);
     }
@@ -238,15 +284,21 @@ BEZSOMA_INLINE void each_piece_of_tet(F &&f) {
     }
 }
 
+/// Where a run of controls begins, with `row` numbers a control: see Batches.
+template <class T>
+BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int32_t control, int row = 3) {
+    return (control < 0 ? foreign_end : own) + std::int64_t{control} * row;
+}
+
 /// Reads the controls of `lanes` tets: u[3 p + k][lane] = component k of the control at position p
 /// of the lane's tet. May read up to lanes - 1 numbers past a control: pad the vector.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE void gather(const T *from, const std::int32_t *first, Lanes<T, lanes> *u) {
+BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
     each_piece_of_tet<n, lanes>([&]<int rows>(auto entity, int begin, auto row) {
         Lanes<T, lanes> block[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
-            block[l] = load<T, lanes>(from + 3 * std::int64_t{first[entity * lanes + l]} + begin);
+            block[l] = load<T, lanes>(place(b.u, b.u_end, first[entity * lanes + l]) + begin);
         transpose<T, lanes>(block);
 #pragma GCC unroll 16
         for (int r = 0; r < rows; ++r)
@@ -256,7 +308,8 @@ BEZSOMA_INLINE void gather(const T *from, const std::int32_t *first, Lanes<T, la
 
 /// Adds the forces of `lanes` tets to memory, lane after lane: tets of a batch share controls.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE void scatter(T *to, const std::int32_t *first, const Lanes<T, lanes> *f) {
+BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
+                            const Lanes<T, lanes> *f) {
     each_piece_of_tet<n, lanes>([&]<int rows>(auto entity, int begin, auto row) {
         Lanes<T, lanes> block[lanes] = {};
 #pragma GCC unroll 16
@@ -265,7 +318,7 @@ BEZSOMA_INLINE void scatter(T *to, const std::int32_t *first, const Lanes<T, lan
         transpose<T, lanes>(block);
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
-            add_lanes<T, lanes, rows>(to + 3 * std::int64_t{first[entity * lanes + l]} + begin,
+            add_lanes<T, lanes, rows>(place(b.f, b.f_end, first[entity * lanes + l]) + begin,
                                       block[l]);
     });
 }
@@ -327,9 +380,14 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
     constexpr int m = n - 1;
     R stress[6][controls(m)];
     stress_moments<n, T, lanes>(tet, u, stress);
-#pragma GCC unroll 32
-    for (int row = 0; row < 3 * controls(n); ++row)
-        f[row] = R{};
+    // b + e_3 is met here first, all other controls begin their row: those are the ones to clear.
+    for (int s3 = 0, p = 0; s3 <= n; ++s3)
+        for (int s2 = 0; s2 <= s3; p += ++s2)
+            for (int k = 0; k < 3; ++k)
+                f[3 * p + k] = R{};
+    R g0[3];
+    for (int l = 0; l < 3; ++l)
+        g0[l] = -(tet.g[0][l] + tet.g[1][l] + tet.g[2][l]);
     constexpr int voigt[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     each_control<m>([&](int p, int p1, int p2, int p3) {
         const T top = static_cast<T>(ladder_scales<m>.top[p]);
@@ -338,13 +396,10 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
             const R x = stress[voigt[k][0]][p] * top;
             const R y = stress[voigt[k][1]][p] * top;
             const R z = stress[voigt[k][2]][p] * top;
-            const R f1 = x * tet.g[0][0] + y * tet.g[0][1] + z * tet.g[0][2];
-            const R f2 = x * tet.g[1][0] + y * tet.g[1][1] + z * tet.g[1][2];
-            const R f3 = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
-            f[3 * p + k] -= f1 + f2 + f3;
-            f[3 * p1 + k] += f1;
-            f[3 * p2 + k] += f2;
-            f[3 * p3 + k] += f3;
+            f[3 * p + k] = f[3 * p + k] + x * g0[0] + y * g0[1] + z * g0[2];
+            f[3 * p1 + k] = f[3 * p1 + k] + x * tet.g[0][0] + y * tet.g[0][1] + z * tet.g[0][2];
+            f[3 * p2 + k] = f[3 * p2 + k] + x * tet.g[1][0] + y * tet.g[1][1] + z * tet.g[1][2];
+            f[3 * p3 + k] = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
         }
     });
 }

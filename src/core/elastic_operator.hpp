@@ -59,8 +59,9 @@ public:
 private:
     int width(int sides) const;
     void pack(const ElasticTets &tets);
-    Batches<T> batches(std::size_t chunk, const T *u, T *f) const;
-    T *take_over(const Chunk &chunk, const T *u, int sides, T *to) const;
+    Batches<T> batches(std::size_t chunk) const;
+    T *foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const;
+    bool in_place(const Chunk &chunk, int sides) const;
     void forces_of_chunk(std::size_t chunk, const T *u, T *f, int sides, std::vector<T> &scratch);
     void add_foreign(std::size_t chunk, T *f, int sides) const;
 

@@ -27,16 +27,16 @@ template <int n, class T, int lanes> void apply(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], f[3 * controls(n)];
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
-        gather<n, T, lanes>(b.u, first, u);
+        gather<n, T, lanes>(b, first, u);
         elastic_forces<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u, f);
-        scatter<n, T, lanes>(b.f, first, f);
+        scatter<n, T, lanes>(b, first, f);
     }
 }
 
 template <int n, class T, int lanes> double work(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], sum = {};
     for (std::int64_t i = 0; i < b.count; ++i) {
-        gather<n, T, lanes>(b.u, b.first + i * entities(n) * lanes, u);
+        gather<n, T, lanes>(b, b.first + i * entities(n) * lanes, u);
         sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u);
     }
     double all = 0;
@@ -58,14 +58,14 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
             tet.mu = R{} + b.lame[2 * b.region[i * lanes + lane] + 1];
             for (int side = 0; side < sides; side += lanes) {
                 each_piece_of_tet<n, 512>([&]<int rows>(auto entity, int, auto row) {
-                    const T *from = b.u + 3 * std::int64_t{first[entity * lanes + lane]} * sides;
+                    const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
                         u[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
                 });
                 elastic_forces<n, T, lanes>(tet, u, f);
                 each_piece_of_tet<n, 512>([&]<int rows>(auto entity, int, auto row) {
-                    T *to = b.f + 3 * std::int64_t{first[entity * lanes + lane]} * sides;
+                    T *to = place(b.f, b.f_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
                         store<T, lanes>(to + r * sides + side,
