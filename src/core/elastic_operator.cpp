@@ -68,18 +68,24 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
         batch_.push_back(batch_.back() + (chunk.tets + lanes_ - 1) / lanes_);
     first_.resize(size(batch_.back() * per_tet * lanes_));
     region_.resize(size(batch_.back() * lanes_));
+    met_.resize(size(batch_.back()));
     geometry_.resize(size(batch_.back() * 9 * lanes_));
     team_.run(chunks_.parts.size(), [&](std::size_t c, std::size_t) {
         const Chunk &chunk = chunks_.parts[c];
+        std::int32_t met = 0;
         const std::int64_t places = (batch_[c + 1] - batch_[c]) * lanes_;
         for (std::int64_t i = 0; i < places; ++i) {
             const std::int64_t tet = chunk.tet + std::min(i, chunk.tets - 1);
             const std::int64_t batch = batch_[c] + i / lanes_, lane = i % lanes_;
             for (std::int64_t e = 0; e < per_tet; ++e) {
                 const std::int32_t local = chunks_.local[size(tet * per_tet + e)];
+                const bool own = local < chunk.owned;
                 first_[size((batch * per_tet + e) * lanes_ + lane)] =
-                    local < chunk.owned ? local : local - chunk.owned - chunk.foreign;
+                    own ? local : local - chunk.owned - chunk.foreign;
+                if (own)
+                    met = std::max(met, local + controls_inside(tets.degree, static_cast<int>(e)));
             }
+            met_[size(batch)] = met;
             region_[size(batch * lanes_ + lane)] = tets.region(tet);
             if (i >= chunk.tets)
                 continue; // a lane too many: the last tet again, without volume, adds nothing
@@ -113,6 +119,7 @@ template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
             .first = first_.data() + b * per_tet * lanes_,
             .geometry = geometry_.data() + b * 9 * lanes_,
             .region = region_.data() + b * lanes_,
+            .met = met_.data() + b,
             .lame = lame_.data(),
             .u = nullptr,
             .u_end = nullptr,
@@ -175,7 +182,6 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, int si
         b.f_end = b.f + own + foreign;
     }
     b.u_end = foreign_of(chunk, u, sides, next);
-    std::fill_n(b.f, own, T{});
     std::fill_n(b.f_end - foreign, foreign, T{});
     if (sides == 1)
         kernel_.apply(b);

@@ -72,6 +72,7 @@ private:
     std::vector<std::int64_t> batch_;     // (chunks + 1,) the first batch of each chunk
     std::vector<std::int32_t> first_;     // (batches, entities, lanes)
     std::vector<std::int32_t> region_;    // (batches, lanes)
+    std::vector<std::int32_t> met_;       // (batches,) own controls met until the end of each
     std::vector<T> geometry_;             // (batches, 9, lanes)
     std::vector<T> lame_;                 // (regions, 2)
     std::vector<T> foreign_;              // (foreign controls, 3, sides)
