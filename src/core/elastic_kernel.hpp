@@ -210,40 +210,36 @@ BEZSOMA_INLINE void exchange(Lanes<T, lanes> &a, Lanes<T, lanes> &b) {
 #undef HIGH
 }
 
-/// Transposes `lanes` registers in place: row r, lane l <-> row l, lane r.
-template <class T, int lanes, int s = lanes / 2>
+/// Transposes squares of `count` numbers in `count` registers: in each square row r, lane l <-> row
+/// l, lane r.
+template <class T, int lanes, int count = lanes, int s = count / 2>
 BEZSOMA_INLINE void transpose(Lanes<T, lanes> *rows) {
     if constexpr (s > 0) {
 #pragma GCC unroll 16
-        for (int i = 0; i < lanes; ++i)
+        for (int i = 0; i < count; ++i)
             if ((i & s) == 0)
                 exchange<T, lanes, s>(rows[i], rows[i + s]);
-        transpose<T, lanes, s / 2>(rows);
+        transpose<T, lanes, count, s / 2>(rows);
     }
 }
 
-/// Adds the first `count` lanes of v to memory, in pieces that neither overrun nor overlap.
-template <class T, int lanes, int count, int done = 0>
-BEZSOMA_INLINE void add_lanes(T *to, const Lanes<T, lanes> &v) {
-    constexpr int left = count - done;
-    if constexpr (left >= lanes) {
-        store<T, lanes>(to, load<T, lanes>(to) + v);
-    } else if constexpr (lanes >= 16 && left >= 8) {
-        const Lanes<T, 8> piece = __builtin_shufflevector(v, v, done, done + 1, done + 2, done + 3,
-                                                          done + 4, done + 5, done + 6, done + 7);
-        store<T, 8>(to + done, load<T, 8>(to + done) + piece);
-        add_lanes<T, lanes, count, done + 8>(to, v);
-    } else if constexpr (lanes >= 8 && left >= 4) {
-        const Lanes<T, 4> piece = __builtin_shufflevector(v, v, done, done + 1, done + 2, done + 3);
-        store<T, 4>(to + done, load<T, 4>(to + done) + piece);
-        add_lanes<T, lanes, count, done + 4>(to, v);
-    } else if constexpr (lanes >= 4 && left >= 2) {
-        const Lanes<T, 2> piece = __builtin_shufflevector(v, v, done, done + 1);
-        store<T, 2>(to + done, load<T, 2>(to + done) + piece);
-        add_lanes<T, lanes, count, done + 2>(to, v);
-    } else if constexpr (left > 0) {
-        to[done] += v[done];
-        add_lanes<T, lanes, count, done + 1>(to, v);
+/// Numbers travel between tets and lanes in squares of so many at most: wider ones would cross lines
+/// of the cache nearly always, and take more shuffles.
+template <int lanes> inline constexpr int square = lanes < 4 ? lanes : 4;
+
+/// Numbers from one lane's memory after those of another: loads, not shuffles.
+template <class T, int lanes>
+BEZSOMA_INLINE Lanes<T, lanes> joined(const T *const *from, int begin) {
+    if constexpr (lanes <= square<lanes>) {
+        return load<T, lanes>(*from + begin);
+    } else {
+        const auto x = joined<T, lanes / 2>(from, begin);
+        const auto y = joined<T, lanes / 2>(from + lanes / 2, begin);
+        if constexpr (lanes == 8)
+            return __builtin_shufflevector(x, y, 0, 1, 2, 3, 4, 5, 6, 7);
+        else
+            return __builtin_shufflevector(x, y, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14,
+                                           15);
     }
 }
 
@@ -254,34 +250,28 @@ template <int value> struct Const {
     constexpr operator int() const { return value; }
 };
 
-/// The same piece of each entity of one dimension. At low degree unrolled for good: the place of
-/// every row is then known when this is compiled, and all stays in registers.
-template <int n, int rows, int entity, int end, int begin, int row, int run, class F>
+/// The entities of one dimension. At low degree unrolled for good: the place of every row is then
+/// known when this is compiled, and all stays in registers.
+template <int n, int rows, int entity, int end, int row, class F>
 BEZSOMA_INLINE void each_entity(F &&f) {
     if constexpr (n > 2) {
         for (int e = entity; e < end; ++e)
-            f.template operator()<rows>(e, begin, row + (e - entity) * run);
+            f.template operator()<rows>(e, row + (e - entity) * rows);
     } else if constexpr (entity < end) {
-        f.template operator()<rows>(Const<entity>{}, begin, Const<row>{});
-        each_entity<n, rows, entity + 1, end, begin, row + run, run>(f);
+        f.template operator()<rows>(Const<entity>{}, Const<row>{});
+        each_entity<n, rows, entity + 1, end, row + rows>(f);
     }
 }
 
-/// Calls f<rows>(entity, first row in its run, its row among all) for every piece of at most
-/// `lanes` numbers of one entity's run: the pieces in which controls travel.
-template <int n, int lanes, int dim = 0, int begin = 0, class F>
-BEZSOMA_INLINE void each_piece_of_tet(F &&f) {
-    constexpr int run = 3 * inside(n, dim);
-    if constexpr (begin < run) {
-        constexpr int rows = run - begin < lanes ? run - begin : lanes;
-        constexpr int entity = dim == 0 ? 0 : dim == 1 ? 4 : dim == 2 ? 10 : 14;
-        constexpr int many = dim == 0 ? 4 : dim == 1 ? 6 : dim == 2 ? 4 : 1;
-        constexpr int row = 3 * first_of_entity(n, entity) + begin;
-        each_entity<n, rows, entity, entity + many, begin, row, run>(f);
-        each_piece_of_tet<n, lanes, dim, begin + rows>(f);
-    } else if constexpr (dim < 3) {
-        each_piece_of_tet<n, lanes, dim + 1, 0>(f);
-    }
+/// Calls f<rows>(entity, its first row among all) for every run of controls of a tet.
+template <int n, int dim = 0, class F> BEZSOMA_INLINE void each_run_of_tet(F &&f) {
+    constexpr int rows = 3 * inside(n, dim);
+    constexpr int entity = dim == 0 ? 0 : dim == 1 ? 4 : dim == 2 ? 10 : 14;
+    constexpr int many = dim == 0 ? 4 : dim == 1 ? 6 : dim == 2 ? 4 : 1;
+    if constexpr (rows > 0)
+        each_entity<n, rows, entity, entity + many, 3 * first_of_entity(n, entity)>(f);
+    if constexpr (dim < 3)
+        each_run_of_tet<n, dim + 1>(f);
 }
 
 /// Where a run of controls begins, with `row` numbers a control: see Batches.
@@ -290,36 +280,78 @@ BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int32_t control, int row = 
     return (control < 0 ? foreign_end : own) + std::int64_t{control} * row;
 }
 
+/// Reads `rows` numbers at `begin` of every lane's run into the rows that `order` names.
+template <int rows, class T, int lanes>
+BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *order,
+                                  Lanes<T, lanes> *u) {
+    Lanes<T, lanes> block[square<lanes>];
+#pragma GCC unroll 4
+    for (int l = 0; l < square<lanes>; ++l)
+        block[l] = joined<T, lanes>(from + l, begin);
+    transpose<T, lanes, square<lanes>>(block);
+#pragma GCC unroll 4
+    for (int r = 0; r < rows; ++r)
+        u[order[r]] = block[r];
+}
+
 /// Reads the controls of `lanes` tets: u[3 p + k][lane] = component k of the control at position p
-/// of the lane's tet. May read up to lanes - 1 numbers past a control: pad the vector.
+/// of the lane's tet. May read some numbers past a control: pad the vector.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
-    each_piece_of_tet<n, lanes>([&]<int rows>(auto entity, int begin, auto row) {
-        Lanes<T, lanes> block[lanes];
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+        const T *from[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
-            block[l] = load<T, lanes>(place(b.u, b.u_end, first[entity * lanes + l]) + begin);
-        transpose<T, lanes>(block);
-#pragma GCC unroll 16
-        for (int r = 0; r < rows; ++r)
-            u[entity_order<n>.row[row + r]] = block[r];
+            from[l] = place(b.u, b.u_end, first[entity * lanes + l]);
+        constexpr int left = rows % square<lanes>;
+        int begin = 0;
+        for (; begin < rows - left; begin += square<lanes>)
+            gather_square<square<lanes>, T, lanes>(from, begin, entity_order<n>.row + row + begin,
+                                                   u);
+        if constexpr (left > 0)
+            gather_square<left, T, lanes>(from, begin, entity_order<n>.row + row + begin, u);
     });
 }
 
-/// Adds the forces of `lanes` tets to memory, lane after lane: tets of a batch share controls.
+/// Adds `rows` numbers of every lane, 1, 2 or 4, at `begin` of its run, lane after lane: tets of a
+/// batch share controls. Lanes are parted by way of memory, which is free where shuffles are not.
+template <int rows, class T, int lanes>
+BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
+                                   const Lanes<T, lanes> *f) {
+    Lanes<T, lanes> block[rows];
+#pragma GCC unroll 4
+    for (int r = 0; r < rows; ++r)
+        block[r] = f[order[r]];
+    transpose<T, lanes, rows>(block);
+    alignas(64) T parted[rows * lanes];
+#pragma GCC unroll 4
+    for (int r = 0; r < rows; ++r)
+        store<T, lanes>(parted + r * lanes, block[r]);
+#pragma GCC unroll 16
+    for (int l = 0; l < lanes; ++l) {
+        const T *part = parted + l % rows * lanes + l / rows * rows;
+        store<T, rows>(to[l] + begin, load<T, rows>(to[l] + begin) + load<T, rows>(part));
+    }
+}
+
+/// Adds the forces of `lanes` tets to memory.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
                             const Lanes<T, lanes> *f) {
-    each_piece_of_tet<n, lanes>([&]<int rows>(auto entity, int begin, auto row) {
-        Lanes<T, lanes> block[lanes] = {};
-#pragma GCC unroll 16
-        for (int r = 0; r < rows; ++r)
-            block[r] = f[entity_order<n>.row[row + r]];
-        transpose<T, lanes>(block);
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+        T *to[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
-            add_lanes<T, lanes, rows>(place(b.f, b.f_end, first[entity * lanes + l]) + begin,
-                                      block[l]);
+            to[l] = place(b.f, b.f_end, first[entity * lanes + l]);
+        const int *order = entity_order<n>.row + row;
+        constexpr int left = rows % square<lanes>, pairs = lanes >= 2 ? left / 2 * 2 : 0;
+        int begin = 0;
+        for (; begin < rows - left; begin += square<lanes>)
+            scatter_square<square<lanes>, T, lanes>(to, begin, order + begin, f);
+        if constexpr (pairs > 0)
+            scatter_square<pairs, T, lanes>(to, begin, order + begin, f);
+        if constexpr (left > pairs)
+            scatter_square<1, T, lanes>(to, begin + pairs, order + begin + pairs, f);
     });
 }
 
