@@ -13,6 +13,7 @@
 // diagonal scaling a level; all a_j > 0, so nothing cancels and float32 is safe.
 #pragma once
 
+#include "kernels.hpp"
 #include "tet_controls.hpp"
 
 #ifndef BEZSOMA_ISA
@@ -21,6 +22,7 @@
 
 /// Loops over the controls of degrees up to this one are written out for the compiler.
 #define BEZSOMA_UNROLL 2
+#define BEZSOMA_LADDER 4
 
 namespace bezsoma::BEZSOMA_ISA {
 
@@ -44,6 +46,21 @@ template <class T, int lanes> BEZSOMA_INLINE void store(T *to, Lanes<T, lanes> v
 
 // ---------------------------------------------------------------- loops over controls of a tet
 
+/// Positions of b + e_1 and b + e_2 in degree m + 1, for each b of degree m.
+template <int m> struct Above {
+    int first[controls(m)] = {}, second[controls(m)] = {};
+    constexpr Above() {
+        for (int s3 = 0, p = 0; s3 <= m; ++s3)
+            for (int s2 = 0; s2 <= s3; ++s2)
+                for (int s1 = 0; s1 <= s2; ++s1, ++p) {
+                    first[p] = position(s3 + 1, s2, s1);
+                    second[p] = position(s3 + 1, s2 + 1, s1);
+                }
+    }
+};
+
+template <int m> inline constexpr Above<m> above{};
+
 /// Calls f(p, p1, p2, p3) for every control b of degree m: p is the position of b and of b + e_0,
 /// p1, p2, p3 those of b + e_1, b + e_2, b + e_3 in degree m + 1. Unrolled where that is small.
 template <int m, int s3 = 0, int s2 = 0, int s1 = 0, class F>
@@ -58,17 +75,12 @@ BEZSOMA_INLINE void each_unrolled(F &&f) {
         each_unrolled<m, s3 + 1, 0, 0>(f);
 }
 
-template <int m, class F> BEZSOMA_INLINE void each_control(F &&f) {
-    if constexpr (m <= BEZSOMA_UNROLL) {
+template <int m, int unrolled = BEZSOMA_UNROLL, class F> BEZSOMA_INLINE void each_control(F &&f) {
+    if constexpr (m <= unrolled) {
         each_unrolled<m>(f);
     } else {
-        int p = 0;
-        for (int s3 = 0; s3 <= m; ++s3) {
-            const int layer = (s3 + 1) * (s3 + 2) / 2;
-            for (int s2 = 0; s2 <= s3; ++s2)
-                for (int s1 = 0; s1 <= s2; ++s1, ++p)
-                    f(p, p + layer, p + layer + s2 + 1, p + layer + s2 + 2);
-        }
+        for (int p = 0; p < controls(m); ++p)
+            f(p, above<m>.first[p], above<m>.second[p], above<m>.second[p] + 1);
     }
 }
 
@@ -107,23 +119,57 @@ template <int m> struct LadderScales {
 
 template <int m> inline constexpr LadderScales<m> ladder_scales{};
 
+/// y of degree j becomes scale y + S lower, where S is the elevation of the scaled basis: every
+/// control takes what it shares with up to four below, in a tree, so that sums do not wait.
+template <class T, int lanes, int j, int s3 = 0, int s2 = 0, int s1 = 0>
+BEZSOMA_INLINE void elevated(Lanes<T, lanes> *y, const Lanes<T, lanes> *lower, const double *scale) {
+    constexpr int p = position(s3, s2, s1);
+    constexpr bool has[4] = {s3 < j, s2 < s3, s1 < s2, s1 > 0};
+    constexpr int below[4] = {position(s3, s2, s1), position(s3 - 1, s2, s1),
+                              position(s3 - 1, s2 - 1, s1), position(s3 - 1, s2 - 1, s1 - 1)};
+    Lanes<T, lanes> sum = y[p] * static_cast<T>(scale[p]), other;
+    if constexpr (has[0])
+        sum += lower[below[0]];
+    if constexpr (has[1])
+        sum += lower[below[1]];
+    if constexpr (has[2] && has[3])
+        other = lower[below[2]] + lower[below[3]];
+    else if constexpr (has[2])
+        other = lower[below[2]];
+    else if constexpr (has[3])
+        other = lower[below[3]];
+    if constexpr (has[2] || has[3])
+        sum += other;
+    y[p] = sum;
+    if constexpr (s1 < s2)
+        elevated<T, lanes, j, s3, s2, s1 + 1>(y, lower, scale);
+    else if constexpr (s2 < s3)
+        elevated<T, lanes, j, s3, s2 + 1, 0>(y, lower, scale);
+    else if constexpr (s3 < j)
+        elevated<T, lanes, j, s3 + 1, 0, 0>(y, lower, scale);
+}
+
 /// The levels below j of the ladder: y of degree j comes in, and goes out as
 /// level_j y + S (ladder of S^T y), where S is the elevation of the scaled basis.
 template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, lanes> *y) {
     constexpr int first = combinations(j + 3, 4);
     if constexpr (j > 0) {
         Lanes<T, lanes> lower[controls(j - 1)];
-        each_control<j - 1>(
+        each_control<j - 1, BEZSOMA_LADDER>(
             [&](int p, int p1, int p2, int p3) { lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]); });
         ladder<m, j - 1, T, lanes>(lower);
+        if constexpr (j - 1 <= BEZSOMA_LADDER) {
+            elevated<T, lanes, j>(y, lower, ladder_scales<m>.level + first);
+        } else {
         for (int p = 0; p < controls(j); ++p)
             y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
-        each_control<j - 1>([&](int p, int p1, int p2, int p3) {
+        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) {
             y[p] += lower[p];
             y[p1] += lower[p];
             y[p2] += lower[p];
             y[p3] += lower[p];
         });
+}
     } else {
         y[0] *= static_cast<T>(ladder_scales<m>.level[0]);
     }
@@ -164,40 +210,36 @@ BEZSOMA_INLINE void exchange(Lanes<T, lanes> &a, Lanes<T, lanes> &b) {
 #undef HIGH
 }
 
-/// Transposes `lanes` registers in place: row r, lane l <-> row l, lane r.
-template <class T, int lanes, int s = lanes / 2>
+/// Transposes squares of `count` numbers in `count` registers: in each square row r, lane l <-> row
+/// l, lane r.
+template <class T, int lanes, int count = lanes, int s = count / 2>
 BEZSOMA_INLINE void transpose(Lanes<T, lanes> *rows) {
     if constexpr (s > 0) {
 #pragma GCC unroll 16
-        for (int i = 0; i < lanes; ++i)
+        for (int i = 0; i < count; ++i)
             if ((i & s) == 0)
                 exchange<T, lanes, s>(rows[i], rows[i + s]);
-        transpose<T, lanes, s / 2>(rows);
+        transpose<T, lanes, count, s / 2>(rows);
     }
 }
 
-/// Adds the first `count` lanes of v to memory, in pieces that neither overrun nor overlap.
-template <class T, int lanes, int count, int done = 0>
-BEZSOMA_INLINE void add_lanes(T *to, const Lanes<T, lanes> &v) {
-    constexpr int left = count - done;
-    if constexpr (left >= lanes) {
-        store<T, lanes>(to, load<T, lanes>(to) + v);
-    } else if constexpr (lanes >= 16 && left >= 8) {
-        const Lanes<T, 8> piece = __builtin_shufflevector(v, v, done, done + 1, done + 2, done + 3,
-                                                          done + 4, done + 5, done + 6, done + 7);
-        store<T, 8>(to + done, load<T, 8>(to + done) + piece);
-        add_lanes<T, lanes, count, done + 8>(to, v);
-    } else if constexpr (lanes >= 8 && left >= 4) {
-        const Lanes<T, 4> piece = __builtin_shufflevector(v, v, done, done + 1, done + 2, done + 3);
-        store<T, 4>(to + done, load<T, 4>(to + done) + piece);
-        add_lanes<T, lanes, count, done + 4>(to, v);
-    } else if constexpr (lanes >= 4 && left >= 2) {
-        const Lanes<T, 2> piece = __builtin_shufflevector(v, v, done, done + 1);
-        store<T, 2>(to + done, load<T, 2>(to + done) + piece);
-        add_lanes<T, lanes, count, done + 2>(to, v);
-    } else if constexpr (left > 0) {
-        to[done] += v[done];
-        add_lanes<T, lanes, count, done + 1>(to, v);
+/// Numbers travel between tets and lanes in squares of so many at most: wider ones would cross lines
+/// of the cache nearly always, and take more shuffles.
+template <int lanes> inline constexpr int square = lanes < 4 ? lanes : 4;
+
+/// Numbers from one lane's memory after those of another: loads, not shuffles.
+template <class T, int lanes>
+BEZSOMA_INLINE Lanes<T, lanes> joined(const T *const *from, int begin) {
+    if constexpr (lanes <= square<lanes>) {
+        return load<T, lanes>(*from + begin);
+    } else {
+        const auto x = joined<T, lanes / 2>(from, begin);
+        const auto y = joined<T, lanes / 2>(from + lanes / 2, begin);
+        if constexpr (lanes == 8)
+            return __builtin_shufflevector(x, y, 0, 1, 2, 3, 4, 5, 6, 7);
+        else
+            return __builtin_shufflevector(x, y, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14,
+                                           15);
     }
 }
 
@@ -208,65 +250,108 @@ template <int value> struct Const {
     constexpr operator int() const { return value; }
 };
 
-/// The same piece of each entity of one dimension. At low degree unrolled for good: the place of
-/// every row is then known when this is compiled, and all stays in registers.
-template <int n, int rows, int entity, int end, int begin, int row, int run, class F>
+/// The entities of one dimension. At low degree unrolled for good: the place of every row is then
+/// known when this is compiled, and all stays in registers.
+template <int n, int rows, int entity, int end, int row, class F>
 BEZSOMA_INLINE void each_entity(F &&f) {
     if constexpr (n > 2) {
         for (int e = entity; e < end; ++e)
-            f.template operator()<rows>(e, begin, row + (e - entity) * run);
+            f.template operator()<rows>(e, row + (e - entity) * rows);
     } else if constexpr (entity < end) {
-        f.template operator()<rows>(Const<entity>{}, begin, Const<row>{});
-        each_entity<n, rows, entity + 1, end, begin, row + run, run>(f);
+        f.template operator()<rows>(Const<entity>{}, Const<row>{});
+        each_entity<n, rows, entity + 1, end, row + rows>(f);
     }
 }
 
-/// Calls f<rows>(entity, first row in its run, its row among all) for every piece of at most
-/// `lanes` numbers of one entity's run: the pieces in which controls travel.
-template <int n, int lanes, int dim = 0, int begin = 0, class F>
-BEZSOMA_INLINE void each_piece_of_tet(F &&f) {
-    constexpr int run = 3 * inside(n, dim);
-    if constexpr (begin < run) {
-        constexpr int rows = run - begin < lanes ? run - begin : lanes;
-        constexpr int entity = dim == 0 ? 0 : dim == 1 ? 4 : dim == 2 ? 10 : 14;
-        constexpr int many = dim == 0 ? 4 : dim == 1 ? 6 : dim == 2 ? 4 : 1;
-        constexpr int row = 3 * first_of_entity(n, entity) + begin;
-        each_entity<n, rows, entity, entity + many, begin, row, run>(f);
-        each_piece_of_tet<n, lanes, dim, begin + rows>(f);
-    } else if constexpr (dim < 3) {
-        each_piece_of_tet<n, lanes, dim + 1, 0>(f);
-    }
+/// Calls f<rows>(entity, its first row among all) for every run of controls of a tet.
+template <int n, int dim = 0, class F> BEZSOMA_INLINE void each_run_of_tet(F &&f) {
+    constexpr int rows = 3 * inside(n, dim);
+    constexpr int entity = dim == 0 ? 0 : dim == 1 ? 4 : dim == 2 ? 10 : 14;
+    constexpr int many = dim == 0 ? 4 : dim == 1 ? 6 : dim == 2 ? 4 : 1;
+    if constexpr (rows > 0)
+        each_entity<n, rows, entity, entity + many, 3 * first_of_entity(n, entity)>(f);
+    if constexpr (dim < 3)
+        each_run_of_tet<n, dim + 1>(f);
+}
+
+/// Where a run of controls begins, with `row` numbers a control: see Batches.
+template <class T>
+BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int32_t control, int row = 3) {
+    return (control < 0 ? foreign_end : own) + std::int64_t{control} * row;
+}
+
+/// Reads `rows` numbers at `begin` of every lane's run into the rows that `order` names.
+template <int rows, class T, int lanes>
+BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *order,
+                                  Lanes<T, lanes> *u) {
+    Lanes<T, lanes> block[square<lanes>];
+#pragma GCC unroll 4
+    for (int l = 0; l < square<lanes>; ++l)
+        block[l] = joined<T, lanes>(from + l, begin);
+    transpose<T, lanes, square<lanes>>(block);
+#pragma GCC unroll 4
+    for (int r = 0; r < rows; ++r)
+        u[order[r]] = block[r];
 }
 
 /// Reads the controls of `lanes` tets: u[3 p + k][lane] = component k of the control at position p
-/// of the lane's tet. May read up to lanes - 1 numbers past a control: pad the vector.
+/// of the lane's tet. May read some numbers past a control: pad the vector.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE void gather(const T *from, const std::int32_t *first, Lanes<T, lanes> *u) {
-    each_piece_of_tet<n, lanes>([&]<int rows>(auto entity, int begin, auto row) {
-        Lanes<T, lanes> block[lanes];
+BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+        const T *from[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
-            block[l] = load<T, lanes>(from + 3 * std::int64_t{first[entity * lanes + l]} + begin);
-        transpose<T, lanes>(block);
-#pragma GCC unroll 16
-        for (int r = 0; r < rows; ++r)
-            u[entity_order<n>.row[row + r]] = block[r];
+            from[l] = place(b.u, b.u_end, first[entity * lanes + l]);
+        constexpr int left = rows % square<lanes>;
+        int begin = 0;
+        for (; begin < rows - left; begin += square<lanes>)
+            gather_square<square<lanes>, T, lanes>(from, begin, entity_order<n>.row + row + begin,
+                                                   u);
+        if constexpr (left > 0)
+            gather_square<left, T, lanes>(from, begin, entity_order<n>.row + row + begin, u);
     });
 }
 
-/// Adds the forces of `lanes` tets to memory, lane after lane: tets of a batch share controls.
-template <int n, class T, int lanes>
-BEZSOMA_INLINE void scatter(T *to, const std::int32_t *first, const Lanes<T, lanes> *f) {
-    each_piece_of_tet<n, lanes>([&]<int rows>(auto entity, int begin, auto row) {
-        Lanes<T, lanes> block[lanes] = {};
+/// Adds `rows` numbers of every lane, 1, 2 or 4, at `begin` of its run, lane after lane: tets of a
+/// batch share controls. Lanes are parted by way of memory, which is free where shuffles are not.
+template <int rows, class T, int lanes>
+BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
+                                   const Lanes<T, lanes> *f) {
+    Lanes<T, lanes> block[rows];
+#pragma GCC unroll 4
+    for (int r = 0; r < rows; ++r)
+        block[r] = f[order[r]];
+    transpose<T, lanes, rows>(block);
+    alignas(64) T parted[rows * lanes];
+#pragma GCC unroll 4
+    for (int r = 0; r < rows; ++r)
+        store<T, lanes>(parted + r * lanes, block[r]);
 #pragma GCC unroll 16
-        for (int r = 0; r < rows; ++r)
-            block[r] = f[entity_order<n>.row[row + r]];
-        transpose<T, lanes>(block);
+    for (int l = 0; l < lanes; ++l) {
+        const T *part = parted + l % rows * lanes + l / rows * rows;
+        store<T, rows>(to[l] + begin, load<T, rows>(to[l] + begin) + load<T, rows>(part));
+    }
+}
+
+/// Adds the forces of `lanes` tets to memory.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
+                            const Lanes<T, lanes> *f) {
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+        T *to[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
-            add_lanes<T, lanes, rows>(to + 3 * std::int64_t{first[entity * lanes + l]} + begin,
-                                      block[l]);
+            to[l] = place(b.f, b.f_end, first[entity * lanes + l]);
+        const int *order = entity_order<n>.row + row;
+        constexpr int left = rows % square<lanes>, pairs = lanes >= 2 ? left / 2 * 2 : 0;
+        int begin = 0;
+        for (; begin < rows - left; begin += square<lanes>)
+            scatter_square<square<lanes>, T, lanes>(to, begin, order + begin, f);
+        if constexpr (pairs > 0)
+            scatter_square<pairs, T, lanes>(to, begin, order + begin, f);
+        if constexpr (left > pairs)
+            scatter_square<1, T, lanes>(to, begin + pairs, order + begin + pairs, f);
     });
 }
 
@@ -327,9 +412,14 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
     constexpr int m = n - 1;
     R stress[6][controls(m)];
     stress_moments<n, T, lanes>(tet, u, stress);
-#pragma GCC unroll 32
-    for (int row = 0; row < 3 * controls(n); ++row)
-        f[row] = R{};
+    // b + e_3 is met here first, all other controls begin their row: those are the ones to clear.
+    for (int s3 = 0, p = 0; s3 <= n; ++s3)
+        for (int s2 = 0; s2 <= s3; p += ++s2)
+            for (int k = 0; k < 3; ++k)
+                f[3 * p + k] = R{};
+    R g0[3];
+    for (int l = 0; l < 3; ++l)
+        g0[l] = -(tet.g[0][l] + tet.g[1][l] + tet.g[2][l]);
     constexpr int voigt[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
     each_control<m>([&](int p, int p1, int p2, int p3) {
         const T top = static_cast<T>(ladder_scales<m>.top[p]);
@@ -338,13 +428,10 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
             const R x = stress[voigt[k][0]][p] * top;
             const R y = stress[voigt[k][1]][p] * top;
             const R z = stress[voigt[k][2]][p] * top;
-            const R f1 = x * tet.g[0][0] + y * tet.g[0][1] + z * tet.g[0][2];
-            const R f2 = x * tet.g[1][0] + y * tet.g[1][1] + z * tet.g[1][2];
-            const R f3 = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
-            f[3 * p + k] -= f1 + f2 + f3;
-            f[3 * p1 + k] += f1;
-            f[3 * p2 + k] += f2;
-            f[3 * p3 + k] += f3;
+            f[3 * p + k] = f[3 * p + k] + x * g0[0] + y * g0[1] + z * g0[2];
+            f[3 * p1 + k] = f[3 * p1 + k] + x * tet.g[0][0] + y * tet.g[0][1] + z * tet.g[0][2];
+            f[3 * p2 + k] = f[3 * p2 + k] + x * tet.g[1][0] + y * tet.g[1][1] + z * tet.g[1][2];
+            f[3 * p3 + k] = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
         }
     });
 }

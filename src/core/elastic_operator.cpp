@@ -69,22 +69,32 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
         batch_.push_back(batch_.back() + (chunk.tets + lanes_ - 1) / lanes_);
     first_.resize(size(batch_.back() * per_tet * lanes_));
     region_.resize(size(batch_.back() * lanes_));
+    met_.resize(size(batch_.back()));
     geometry_.resize(size(batch_.back() * 9 * lanes_));
     team_.run(chunks_.parts.size(), [&](std::size_t c, std::size_t) {
         const Chunk &chunk = chunks_.parts[c];
-        for (std::int64_t i = 0; i < chunk.tets; ++i) {
-            const std::int64_t tet = chunk.tet + i;
+        std::int32_t met = 0;
+        const std::int64_t places = (batch_[c + 1] - batch_[c]) * lanes_;
+        for (std::int64_t i = 0; i < places; ++i) {
+            const std::int64_t tet = chunk.tet + std::min(i, chunk.tets - 1);
             const std::int64_t batch = batch_[c] + i / lanes_, lane = i % lanes_;
-            // Lanes without a tet keep geometry zero: they read control 0 and add nothing.
-            for (std::int64_t e = 0; e < per_tet; ++e)
+            for (std::int64_t e = 0; e < per_tet; ++e) {
+                const std::int32_t local = chunks_.local[size(tet * per_tet + e)];
+                const bool own = local < chunk.owned;
                 first_[size((batch * per_tet + e) * lanes_ + lane)] =
-                    chunks_.local[size(tet * per_tet + e)];
+                    own ? local : local - chunk.owned - chunk.foreign;
+                if (own)
+                    met = std::max(met, local + controls_inside(tets.degree, static_cast<int>(e)));
+            }
+            met_[size(batch)] = met;
+            region_[size(batch * lanes_ + lane)] = tets.region(tet);
+            if (i >= chunk.tets)
+                continue; // a lane too many: the last tet again, without volume, adds nothing
             const TetShape shape = tets.shape(tet);
             const double root = std::sqrt(shape.volume);
             for (std::int64_t k = 0; k < 9; ++k)
                 geometry_[size((batch * 9 + k) * lanes_ + lane)] =
                     static_cast<T>(root * shape.gradients[1 + k / 3][k % 3]);
-            region_[size(batch * lanes_ + lane)] = tets.region(tet);
         }
     });
     std::vector<std::int32_t>().swap(chunks_.local);
@@ -104,72 +114,98 @@ template <class T> int ElasticOperator<T>::width(int sides) const {
     return sides == 1 ? 1 : (sides + lanes_ - 1) / lanes_ * lanes_;
 }
 
-template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c, const T *u, T *f) const {
+template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
     const std::int64_t b = batch_[c], per_tet = entities_of_tet(chunks_.degree);
-    return {batch_[c + 1] - b,
-            first_.data() + b * per_tet * lanes_,
-            geometry_.data() + b * 9 * lanes_,
-            region_.data() + b * lanes_,
-            lame_.data(),
-            u,
-            f};
+    return {.count = batch_[c + 1] - b,
+            .first = first_.data() + b * per_tet * lanes_,
+            .geometry = geometry_.data() + b * 9 * lanes_,
+            .region = region_.data() + b * lanes_,
+            .met = met_.data() + b,
+            .lame = lame_.data(),
+            .u = nullptr,
+            .u_end = nullptr,
+            .f = nullptr,
+            .f_end = nullptr};
 }
 
 namespace {
 
 /// Rows of `from` values each become rows of `to` values; returns the end of what was written.
 template <class T> T *copied(const T *x, std::int64_t from, T *y, std::int64_t to, std::int64_t n) {
-    if (from == to)
-        return std::copy_n(x, n * to, y);
-    for (std::int64_t i = 0; i < n; ++i)
-        std::copy_n(x + i * from, std::min(from, to), y + i * to);
+    const std::int64_t both = std::min(from, to);
+    if (from == to) {
+        for (std::int64_t i = 0; i < n * to; ++i)
+            y[i] = x[i];
+    } else {
+        for (std::int64_t i = 0; i < n; ++i)
+            for (std::int64_t k = 0; k < both; ++k)
+                y[i * to + k] = x[i * from + k];
+    }
     return y + n * to;
 }
 
 } // namespace
 
-/// The controls of a chunk, own ones first, sides padded; returns the end.
+/// The foreign controls of a chunk run by run, sides padded; returns the end.
 template <class T>
-T *ElasticOperator<T>::take_over(const Chunk &chunk, const T *u, int sides, T *to) const {
-    const std::int64_t wide = width(sides), row = 3 * std::int64_t{sides};
-    to = copied(u + row * chunk.control, sides, to, wide, 3 * std::int64_t{chunk.owned});
+T *ElasticOperator<T>::foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const {
     for (const Run &run : chunk.runs)
-        to = copied(u + row * run.control, sides, to, wide, 3 * std::int64_t{run.length});
+        to = copied(u + 3 * std::int64_t{sides} * run.control, sides, to, width(sides),
+                    3 * std::int64_t{run.length});
     return to;
+}
+
+/// Whether a chunk may work on its part of u and f itself: a gather may read past its end.
+template <class T> bool ElasticOperator<T>::in_place(const Chunk &chunk, int sides) const {
+    const std::int64_t after = chunks_.controls - chunk.control - chunk.owned;
+    return width(sides) == sides && 3 * after * sides >= std::int64_t{padding};
 }
 
 template <class T>
 void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, int sides,
                                          std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
-    const std::int64_t wide = width(sides);
-    const std::size_t length = size(3 * (chunk.owned + chunk.foreign) * wide) + padding;
+    const std::int64_t wide = width(sides), row = 3 * std::int64_t{sides};
+    const std::int64_t own = 3 * chunk.owned * wide, foreign = 3 * chunk.foreign * wide;
+    const T *u_here = u + row * chunk.control;
+    T *f_here = f + row * chunk.control, *f_foreign = foreign_.data() + row * chunk.foreign_begin;
+    Batches<T> b = batches(c);
+    b.u = u_here, b.f = f_here, b.f_end = f_foreign + foreign;
+    const bool direct = in_place(chunk, sides);
+    const std::size_t length = size(own + foreign) + padding;
     if (scratch.size() < 2 * length)
         scratch.resize(2 * (size(3 * chunks_.largest * wide) + padding));
-    T *own_u = scratch.data(), *own_f = own_u + length;
-    if (wide != sides)
-        std::fill_n(own_u, length, T{});
-    take_over(chunk, u, sides, own_u);
-    std::fill_n(own_f, length, T{});
+    T *next = scratch.data();
+    if (!direct) {
+        b.u = next;
+        next = copied(u_here, sides, next, wide, 3 * std::int64_t{chunk.owned});
+        b.f = scratch.data() + length;
+        b.f_end = b.f + own + foreign;
+    }
+    b.u_end = foreign_of(chunk, u, sides, next);
+    std::fill_n(b.f_end - foreign, foreign, T{});
     if (sides == 1)
-        kernel_.apply(batches(c, own_u, own_f));
+        kernel_.apply(b);
     else
-        kernel_.apply_many(batches(c, own_u, own_f), static_cast<int>(wide));
-    const std::int64_t row = 3 * std::int64_t{sides};
-    copied(own_f, wide, f + row * chunk.control, sides, 3 * std::int64_t{chunk.owned});
-    copied(own_f + 3 * wide * chunk.owned, wide, foreign_.data() + row * chunk.foreign_begin, sides,
-           3 * std::int64_t{chunk.foreign});
+        kernel_.apply_many(b, static_cast<int>(wide));
+    if (!direct) {
+        copied(b.f, wide, f_here, sides, 3 * std::int64_t{chunk.owned});
+        copied(b.f + own, wide, f_foreign, sides, 3 * std::int64_t{chunk.foreign});
+    }
 }
 
 template <class T> double ElasticOperator<T>::work(const T *u) {
     std::vector<double> sums(chunks_.parts.size());
     team_.run(sums.size(), [&](std::size_t c, std::size_t thread) {
+        const Chunk &chunk = chunks_.parts[c];
         auto &scratch = scratch_[thread];
         if (const auto least = size(3 * std::int64_t{chunks_.largest}) + padding;
             scratch.size() < least)
             scratch.resize(2 * least);
-        take_over(chunks_.parts[c], u, 1, scratch.data());
-        sums[c] = kernel_.work(batches(c, scratch.data(), nullptr));
+        Batches<T> b = batches(c);
+        b.u = scratch.data();
+        b.u_end = foreign_of(chunk, u, 1, copied(u + 3 * chunk.control, 1, scratch.data(), 1, 3 * std::int64_t{chunk.owned}));
+        sums[c] = kernel_.work(b);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);
 }

@@ -59,8 +59,9 @@ public:
 private:
     int width(int sides) const;
     void pack(const ElasticTets &tets);
-    Batches<T> batches(std::size_t chunk, const T *u, T *f) const;
-    T *take_over(const Chunk &chunk, const T *u, int sides, T *to) const;
+    Batches<T> batches(std::size_t chunk) const;
+    T *foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const;
+    bool in_place(const Chunk &chunk, int sides) const;
     void forces_of_chunk(std::size_t chunk, const T *u, T *f, int sides, std::vector<T> &scratch);
     void add_foreign(std::size_t chunk, T *f, int sides) const;
 
@@ -71,6 +72,7 @@ private:
     std::vector<std::int64_t> batch_;     // (chunks + 1,) the first batch of each chunk
     std::vector<std::int32_t> first_;     // (batches, entities, lanes)
     std::vector<std::int32_t> region_;    // (batches, lanes)
+    std::vector<std::int32_t> met_;       // (batches,) own controls met until the end of each
     std::vector<T> geometry_;             // (batches, 9, lanes)
     std::vector<T> lame_;                 // (regions, 2)
     std::vector<T> foreign_;              // (foreign controls, 3, sides)

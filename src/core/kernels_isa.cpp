@@ -23,20 +23,37 @@ BEZSOMA_INLINE Batch<T, lanes> batch_of_tets(const Batches<T> &b, std::int64_t i
     return tet;
 }
 
+/// Clears the own forces that batch i is the first to meet, and calls for memory some batches
+/// ahead, which hides how long it takes: controls are numbered as they are met.
+template <class T> BEZSOMA_INLINE void meet(const Batches<T> &b, std::int64_t i, int row) {
+    constexpr int ahead = 4, line = 64 / sizeof(T);
+    const std::int64_t begin = i > 0 ? b.met[i - 1] : 0;
+    for (std::int64_t k = begin * row; k < std::int64_t{b.met[i]} * row; ++k)
+        b.f[k] = 0;
+    if (i + ahead >= b.count)
+        return;
+    for (std::int64_t k = std::int64_t{b.met[i + ahead - 1]} * row;
+         k < std::int64_t{b.met[i + ahead]} * row; k += line) {
+        __builtin_prefetch(b.u + k);
+        __builtin_prefetch(b.f + k, 1);
+    }
+}
+
 template <int n, class T, int lanes> void apply(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], f[3 * controls(n)];
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
-        gather<n, T, lanes>(b.u, first, u);
+        meet(b, i, 3);
+        gather<n, T, lanes>(b, first, u);
         elastic_forces<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u, f);
-        scatter<n, T, lanes>(b.f, first, f);
+        scatter<n, T, lanes>(b, first, f);
     }
 }
 
 template <int n, class T, int lanes> double work(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], sum = {};
     for (std::int64_t i = 0; i < b.count; ++i) {
-        gather<n, T, lanes>(b.u, b.first + i * entities(n) * lanes, u);
+        gather<n, T, lanes>(b, b.first + i * entities(n) * lanes, u);
         sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u);
     }
     double all = 0;
@@ -48,7 +65,8 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
 template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
     using R = Lanes<T, lanes>;
     R u[3 * controls(n)], f[3 * controls(n)];
-    for (std::int64_t i = 0; i < b.count; ++i)
+    for (std::int64_t i = 0; i < b.count; ++i) {
+        meet(b, i, 3 * sides);
         for (int lane = 0; lane < lanes; ++lane) {
             const std::int32_t *first = b.first + i * entities(n) * lanes;
             Batch<T, lanes> tet = {};
@@ -57,15 +75,15 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
             tet.lambda = R{} + b.lame[2 * b.region[i * lanes + lane]];
             tet.mu = R{} + b.lame[2 * b.region[i * lanes + lane] + 1];
             for (int side = 0; side < sides; side += lanes) {
-                each_piece_of_tet<n, 512>([&]<int rows>(auto entity, int, auto row) {
-                    const T *from = b.u + 3 * std::int64_t{first[entity * lanes + lane]} * sides;
+                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) {
+                    const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
                         u[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
                 });
                 elastic_forces<n, T, lanes>(tet, u, f);
-                each_piece_of_tet<n, 512>([&]<int rows>(auto entity, int, auto row) {
-                    T *to = b.f + 3 * std::int64_t{first[entity * lanes + lane]} * sides;
+                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) {
+                    T *to = place(b.f, b.f_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
                         store<T, lanes>(to + r * sides + side,
@@ -74,6 +92,7 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
                 });
             }
         }
+    }
 }
 
 constexpr int lanes64 = BEZSOMA_BYTES / 8, lanes32 = BEZSOMA_BYTES / 4;
