@@ -87,13 +87,20 @@ Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int
     const std::int64_t per_tet = std::max(1, degree * degree * degree / 6);
     const std::int64_t most = std::max<std::int64_t>(64, target / per_tet);
     const std::int64_t number = (tets + most - 1) / most;
+    std::vector<std::int64_t> at;
+    for (std::int64_t i = 0; i <= number; ++i)
+        at.push_back(tets * i / number);
+    return chunks(degree, first, at, team);
+}
+
+Chunks chunks(int degree, const std::int32_t *first, const std::vector<std::int64_t> &cuts,
+              Team &team) {
     Chunks all{degree, 0, 0, {}, {}, 0};
-    all.local.resize(static_cast<std::size_t>(tets * entities_of_tet(degree)));
-    all.parts.resize(static_cast<std::size_t>(number));
-    for (std::int64_t i = 0; i < number; ++i) {
-        Chunk &chunk = all.parts[static_cast<std::size_t>(i)];
-        chunk.tet = tets * i / number;
-        chunk.tets = tets * (i + 1) / number - chunk.tet;
+    all.local.resize(static_cast<std::size_t>(cuts.back() * entities_of_tet(degree)));
+    all.parts.resize(cuts.size() - 1);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        all.parts[i].tet = cuts[i];
+        all.parts[i].tets = cuts[i + 1] - cuts[i];
     }
     const auto each = [&](const auto &work) {
         team.run(all.parts.size(), [&](std::size_t i, std::size_t) { work(all.parts[i]); });
@@ -117,6 +124,13 @@ Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int
     }
     hand_to_owners(all, team);
     return all;
+}
+
+std::vector<std::int64_t> cuts(const Chunks &chunks) {
+    std::vector<std::int64_t> at{0};
+    for (const Chunk &chunk : chunks.parts)
+        at.push_back(chunk.tet + chunk.tets);
+    return at;
 }
 
 } // namespace bezsoma

@@ -58,4 +58,12 @@ struct Chunks {
 Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target,
               Team &team);
 
+/// The same walk cut where it is told: chunk i holds tets [cuts[i], cuts[i + 1]). So fields of
+/// several degrees share their chunks.
+Chunks chunks(int degree, const std::int32_t *first, const std::vector<std::int64_t> &cuts,
+              Team &team);
+
+/// Where a walk was cut.
+std::vector<std::int64_t> cuts(const Chunks &chunks);
+
 } // namespace bezsoma

@@ -122,7 +122,8 @@ template <int m> inline constexpr LadderScales<m> ladder_scales{};
 /// y of degree j becomes scale y + S lower, where S is the elevation of the scaled basis: every
 /// control takes what it shares with up to four below, in a tree, so that sums do not wait.
 template <class T, int lanes, int j, int s3 = 0, int s2 = 0, int s1 = 0>
-BEZSOMA_INLINE void elevated(Lanes<T, lanes> *y, const Lanes<T, lanes> *lower, const double *scale) {
+BEZSOMA_INLINE void elevated(Lanes<T, lanes> *y, const Lanes<T, lanes> *lower,
+                             const double *scale) {
     constexpr int p = position(s3, s2, s1);
     constexpr bool has[4] = {s3 < j, s2 < s3, s1 < s2, s1 > 0};
     constexpr int below[4] = {position(s3, s2, s1), position(s3 - 1, s2, s1),
@@ -161,15 +162,15 @@ template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, 
         if constexpr (j - 1 <= BEZSOMA_LADDER) {
             elevated<T, lanes, j>(y, lower, ladder_scales<m>.level + first);
         } else {
-        for (int p = 0; p < controls(j); ++p)
-            y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
-        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) {
-            y[p] += lower[p];
-            y[p1] += lower[p];
-            y[p2] += lower[p];
-            y[p3] += lower[p];
-        });
-}
+            for (int p = 0; p < controls(j); ++p)
+                y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
+            each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) {
+                y[p] += lower[p];
+                y[p1] += lower[p];
+                y[p2] += lower[p];
+                y[p3] += lower[p];
+            });
+        }
     } else {
         y[0] *= static_cast<T>(ladder_scales<m>.level[0]);
     }
@@ -223,8 +224,8 @@ BEZSOMA_INLINE void transpose(Lanes<T, lanes> *rows) {
     }
 }
 
-/// Numbers travel between tets and lanes in squares of so many at most: wider ones would cross lines
-/// of the cache nearly always, and take more shuffles.
+/// Numbers travel between tets and lanes in squares of so many at most: wider ones would cross
+/// lines of the cache nearly always, and take more shuffles.
 template <int lanes> inline constexpr int square = lanes < 4 ? lanes : 4;
 
 /// Numbers from one lane's memory after those of another: loads, not shuffles.
@@ -404,14 +405,13 @@ BEZSOMA_INLINE void stress_moments(const Batch<T, lanes> &tet, const Lanes<T, la
         ladder<m, m, T, lanes>(stress[c]);
 }
 
-/// f[a] = K u[a] on every lane's tet: both by position, three components each.
+/// f[a] by position, three components each, from what `stress_moments` gives.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
-                                   Lanes<T, lanes> *f) {
+BEZSOMA_INLINE void forces_of_moments(const Batch<T, lanes> &tet,
+                                      const Lanes<T, lanes> (&stress)[6][controls(n - 1)],
+                                      Lanes<T, lanes> *f) {
     using R = Lanes<T, lanes>;
     constexpr int m = n - 1;
-    R stress[6][controls(m)];
-    stress_moments<n, T, lanes>(tet, u, stress);
     // b + e_3 is met here first, all other controls begin their row: those are the ones to clear.
     for (int s3 = 0, p = 0; s3 <= n; ++s3)
         for (int s2 = 0; s2 <= s3; p += ++s2)
@@ -434,6 +434,15 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
             f[3 * p3 + k] = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
         }
     });
+}
+
+/// f[a] = K u[a] on every lane's tet: both by position, three components each.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
+                                   Lanes<T, lanes> *f) {
+    Lanes<T, lanes> stress[6][controls(n - 1)];
+    stress_moments<n, T, lanes>(tet, u, stress);
+    forces_of_moments<n, T, lanes>(tet, stress, f);
 }
 
 /// int tau : eps on every lane's tet. From gradients, not from u . f, so that a body that is

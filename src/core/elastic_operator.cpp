@@ -16,11 +16,12 @@ constexpr std::size_t padding = 16; // numbers that a gather may read past the e
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
-std::int64_t expected_controls(const ElasticTets &tets) {
-    return tets.tets * tets.degree * tets.degree * tets.degree / 6;
-}
-
 } // namespace
+
+std::int64_t controls_of_chunk(const ElasticTets &tets) {
+    const std::int64_t expected = tets.tets * tets.degree * tets.degree * tets.degree / 6;
+    return std::clamp(expected / shares, least_controls, most_controls);
+}
 
 TetShape ElasticTets::shape(std::int64_t i) const {
     const std::int64_t *at = corners + 4 * order[i];
@@ -48,9 +49,7 @@ TetShape ElasticTets::shape(std::int64_t i) const {
 template <class T>
 ElasticOperator<T>::ElasticOperator(const ElasticTets &tets, const Kernels &kernels, Team &team)
     : team_(team),
-      chunks_(bezsoma::chunks(
-          tets.degree, tets.first, tets.tets,
-          std::clamp(expected_controls(tets) / shares, least_controls, most_controls), team)),
+      chunks_(bezsoma::chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets), team)),
       lame_(tets.lame, tets.lame + 2 * tets.regions), scratch_(team.size()) {
     if constexpr (sizeof(T) == 8) {
         kernel_ = kernels.f64[tets.degree - 1];
@@ -204,7 +203,9 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
             scratch.resize(2 * least);
         Batches<T> b = batches(c);
         b.u = scratch.data();
-        b.u_end = foreign_of(chunk, u, 1, copied(u + 3 * chunk.control, 1, scratch.data(), 1, 3 * std::int64_t{chunk.owned}));
+        b.u_end = foreign_of(
+            chunk, u, 1,
+            copied(u + 3 * chunk.control, 1, scratch.data(), 1, 3 * std::int64_t{chunk.owned}));
         sums[c] = kernel_.work(b);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);

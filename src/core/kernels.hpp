@@ -9,8 +9,8 @@ namespace bezsoma {
 /// Tets of one chunk in batches of one per lane, and the vectors they work on.
 ///
 /// first (batches, entities, lanes): the control at which each entity's run begins, among the own
-/// ones of the chunk, or below zero, counted from the end of its foreign ones; geometry (batches, 9,
-/// lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes); lame (regions, 2): lambda, mu.
+/// ones of the chunk, or below zero, counted from the end of its foreign ones; geometry (batches,
+/// 9, lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes); lame (regions, 2): lambda, mu.
 /// u, f (own controls, 3), u_end, f_end the ends of (foreign controls, 3). Past both parts of u 16
 /// numbers may be read but are not used. Own forces are cleared when a batch first meets them, met
 /// (batches,) being one past the own controls met so far; foreign ones are added to.
@@ -63,12 +63,15 @@ template <class T> struct Kernel {
     double (*work)(const Batches<T> &); // sum over tets of int tau : eps
 };
 
+struct MixedKernels;
+
 struct Kernels {
     const char *name;
     int lanes64, lanes32;
     Kernel<double> f64[10]; // by degree - 1
     Kernel<float> f32[10];
     BlockKernel blocks[10][4]; // by degree - 1 and dimension; empty where no control is inside
+    const MixedKernels *mixed;
 };
 
 /// The widest instruction set that this processor has; or the one named.

@@ -60,16 +60,7 @@ class MatrixFree:
 
         lambda and mu are divided by `unit`; `first` are the `walked` controls, if at hand.
         """
-        net, mesh = self.net, self.net.mesh
-        return _core.Walk(
-            net.degree,
-            net.walked() if first is None else first,
-            net.morton,
-            mesh.points,
-            mesh.tets,
-            mesh.region,
-            np.ascontiguousarray(self.lame / unit),
-        )
+        return walk(self.net, self.lame / unit, first)
 
     def __matmul__(self, x: Floats) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N."""
@@ -92,3 +83,21 @@ class MatrixFree:
         are large and strains small, and in x . K x large terms would cancel.
         """
         return self.kernel.work(np.ascontiguousarray(x)) / 2
+
+
+def walk(net: ControlNet, moduli: Floats, first: Int32s | None = None) -> _core.Walk:
+    """The tets in the order in which they numbered the controls, as the core takes them.
+
+    moduli (regions, 2): lambda and mu, or what the taker reads there; `first` are the `walked`
+    controls of the net, if at hand.
+    """
+    mesh = net.mesh
+    return _core.Walk(
+        net.degree,
+        net.walked() if first is None else first,
+        net.morton,
+        mesh.points,
+        mesh.tets,
+        mesh.region,
+        np.ascontiguousarray(moduli, dtype=np.float64),
+    )
