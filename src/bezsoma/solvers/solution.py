@@ -111,6 +111,16 @@ class Solution:
         return volume.determinant(self.displacement)
 
     @cached_property
+    def largest_divergence(self) -> float:
+        """The largest |div u| [-] in the domain points of every tet; it is attained."""
+        return self.divergence.largest()[0]
+
+    @cached_property
+    def largest_determinant(self) -> float:
+        """The largest |det(I + grad u) - 1| [-] in the domain points of every tet; attained."""
+        return self.determinant.largest()[0]
+
+    @cached_property
     def von_mises(self) -> BrokenField:
         """The von Mises stress, MPa, *interpolated* in the domain points of degree n - 1.
 
@@ -190,8 +200,8 @@ class Solution:
             "pressure_level": self.level,
             "pressure_range": [low, high],
             "held_tets": self.held_tets,
-            "largest_divergence": self.divergence.largest()[0],
-            "largest_determinant": self.determinant.largest()[0],
+            "largest_divergence": self.largest_divergence,
+            "largest_determinant": self.largest_determinant,
         }
 
 
