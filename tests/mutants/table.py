@@ -168,8 +168,8 @@ PYTHON = (
     Mutant(
         "reactions that push the other way",
         f"{SOLVERS}/solution.py",
-        "pull = -equations.residual(u)",
-        "pull = equations.residual(u)",
+        "return resultants(equations.net, equations.of_support, -equations.residual(u))",
+        "return resultants(equations.net, equations.of_support, equations.residual(u))",
         SOLVES,
     ),
     Mutant(
