@@ -153,7 +153,7 @@ def with_datum(body: bz.Body, corner: Sequence[float]) -> tuple[Floats, Floats, 
 
 
 def test_a_pressure_that_is_fixed_at_some_point_is_another_answer() -> None:
-    """The paper asks for a datum after eq. 16; with a free boundary it changes the answer."""
+    """The paper asks for a datum; with a free boundary it changes the answer."""
     body = slab(2, pressure_degree=1)
     solution = bz.solve(body, solver="direct")
     assert solution.level.startswith("determined")

@@ -102,7 +102,7 @@ def test_displacement_pressure_and_energy(pair: tuple[bz.Solution, TaylorHood]) 
 
 
 def test_stress_is_that_of_shear_and_pressure(pair: tuple[bz.Solution, TaylorHood]) -> None:
-    """Eq. 16 pointwise, from the twin's own gradient and pressure."""
+    """2 G eps' - p I pointwise, from the twin's own gradient and pressure."""
     ours, twin = pair
     H, p = twin.gradient, twin.sampled_pressure[..., None, None]
     eps = (H + np.swapaxes(H, -1, -2)) / 2

@@ -37,7 +37,7 @@ class MixedOperator(Protocol):
 class MixedMatrix:
     """The system of the paper's eqs. 39 and 40 as matrices: the oracle, and for small problems.
 
-    `shear` is K_uu, of the deviatoric strain alone (eqs. 13, 18, 36 and 42); `coupling` (cp, 3c)
+    `shear` is K_uu, of the deviatoric strain alone (eqs. 18, 36 and 42); `coupling` (cp, 3c)
     is K_pu, -int q div v (eqs. 37, 38 and 41), and its transpose K_up; `softness` (cp, cp) is
     -K_pp, int q q' / kappa.
 
@@ -114,7 +114,7 @@ def deviatoric_lame(moduli: Floats) -> Floats:
     """Lame's constants (regions, 2) of the deviatoric part, -2/3 G and G: without bulk modulus.
 
     2 G eps' : eps' = 2 G eps : eps - 2/3 G tr^2, so that diag(2G, 2G, 2G, G, G, G) of the
-    corrected eq. 42 on engineering shears is elasticity with lambda = -2/3 G.
+    corrected eq. 42 on the strains of eq. 19 (engineering shears) is elasticity with lambda = -2/3 G.
     """
     G = moduli[:, 0]
     return frozen(np.stack([-2 / 3 * G, G], axis=1))

@@ -41,7 +41,7 @@ def stress(body: Body, displacement: Field) -> BrokenField:
 
 
 def mixed_stress(body: Body, displacement: Field, pressure: Field | BrokenField) -> BrokenField:
-    """The Cauchy stress (t, m, 3, 3) MPa of the mixed form: 2 G eps' - p I (paper, eq. 16).
+    """The Cauchy stress (t, m, 3, 3) MPa of the mixed form: 2 G eps' - p I (paper, eqs. 15 and 16).
 
     G by the region of each tet. Its mean is minus the pressure, to the last bit but rounding.
     """

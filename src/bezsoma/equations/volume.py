@@ -24,7 +24,7 @@ MOST = 9
 
 
 def divergence(displacement: Field) -> BrokenField:
-    """The volumetric strain div u [-], tr eps (paper, eqs. 12 and 36), of degree n - 1.
+    """The volumetric strain div u [-], tr eps (paper, eq. 12), of degree n - 1.
 
     >>> from bezsoma.mesh import ControlNet
     >>> from bezsoma.mesh.solids import block

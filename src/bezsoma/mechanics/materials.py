@@ -208,8 +208,8 @@ class LinearElastic:
     def deviatoric_stress(self, H: Floats) -> Floats:
         """The deviatoric stress (..., 3, 3) MPa at H (..., 3, 3): 2 G (eps - tr(eps)/3 I).
 
-        Paper, eqs. 13 and 16 with 18: stress = 2 G eps' - p I, p > 0 in compression. With the
-        pressure p = -kappa tr(eps) of eqs. 14 and 12 it is the stress of eq. 5:
+        Paper, eqs. 13 and 18; stress = 2 G eps' - p I with p > 0 in compression. With the pressure
+        p = -kappa tr(eps) of eq. 14 the sum is that of eq. 9:
 
         >>> H = np.arange(9.0).reshape(3, 3) ** 2
         >>> tissue = LinearElastic(E=2.0, nu=0.3)
