@@ -114,7 +114,7 @@ def deviatoric_lame(moduli: Floats) -> Floats:
     """Lame's constants (regions, 2) of the deviatoric part, -2/3 G and G: without bulk modulus.
 
     2 G eps' : eps' = 2 G eps : eps - 2/3 G tr^2, so that diag(2G, 2G, 2G, G, G, G) of the
-    corrected eq. 42 on the strains of eq. 19 (engineering shears) is elasticity with lambda = -2/3 G.
+    corrected eq. 42 on the strains of eq. 19 is elasticity with lambda = -2/3 G.
     """
     G = moduli[:, 0]
     return frozen(np.stack([-2 / 3 * G, G], axis=1))
