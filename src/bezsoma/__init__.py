@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from bezsoma.case import Case as Case
     from bezsoma.case import read_case as read_case
     from bezsoma.case import run_case as run_case
+    from bezsoma.equations.locked import unlocked as unlocked
     from bezsoma.errors import BezSomaError as BezSomaError
     from bezsoma.errors import InputError as InputError
     from bezsoma.errors import MeshError as MeshError
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from bezsoma.mesh.files import write_mesh as write_mesh
     from bezsoma.mesh.solids import ball as ball
     from bezsoma.mesh.solids import block as block
+    from bezsoma.mesh.split import split as split
     from bezsoma.mesh.tets import TetMesh as TetMesh
     from bezsoma.results import Results as Results
     from bezsoma.results import read_results as read_results
@@ -57,6 +59,7 @@ if TYPE_CHECKING:
 
 HOMES = {
     "bezsoma.case": ["Case", "read_case", "run_case"],
+    "bezsoma.equations.locked": ["unlocked"],
     "bezsoma.errors": ["BezSomaError", "InputError", "MeshError", "MissingExtra", "NotConverged"],
     "bezsoma.imaging.phantom": ["head_phantom"],
     "bezsoma.mechanics.body": ["Body"],
@@ -70,6 +73,7 @@ HOMES = {
     "bezsoma.mesh.field": ["Field"],
     "bezsoma.mesh.files": ["read_mesh", "write_mesh"],
     "bezsoma.mesh.solids": ["ball", "block"],
+    "bezsoma.mesh.split": ["split"],
     "bezsoma.mesh.tets": ["TetMesh"],
     "bezsoma.results": ["Results", "read_results"],
     "bezsoma.solvers.solution": ["Solution"],

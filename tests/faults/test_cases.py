@@ -97,7 +97,15 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
     ),
     "E and G": (("nu = 0.3", "G = 0.3"), ["materials.tissue: give E and nu, or G and kappa"]),
     "E below zero": (("E = 0.015", "E = -1"), ["materials.tissue: E = -1 MPa", "positive"]),
-    "incompressible": (("nu = 0.3", "nu = 0.5"), ["materials.tissue: nu = 0.5", "nu < 1/2"]),
+    "nu beyond 1/2": (("nu = 0.3", "nu = 0.6"), ["materials.tissue: nu = 0.6", "at most 1/2"]),
+    "a pressure degree as text": (
+        ("degree = 2", 'degree = 2\npressure_degree = "one"'),
+        ["pressure_degree: a whole number is needed"],
+    ),
+    "a field that is none": (
+        ("pictures = []", 'pictures = []\nfields = "presure"'),
+        ["output.fields: 'presure' cannot stand here", "'pressure'"],
+    ),
     "E not a number": (("E = 0.015", "E = nan"), ["materials.tissue.E: a finite number", "nan"]),
     "no material": (
         ("[materials.tissue]\nE = 0.015\nnu = 0.3", "materials = {}"),
@@ -161,7 +169,7 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
     ),
     "unknown method": (
         ("[output]", '[solver]\nmethod = "lu"\n[output]'),
-        ["solver.method: 'lu'", "'auto', 'direct', 'multigrid' or 'cg'"],
+        ["solver.method: 'lu'", "'auto', 'direct', 'multigrid', 'cg' or 'minres'"],
     ),
     "a tolerance of zero": (
         ("[output]", "[solver]\nrtol = 0\n[output]"),
@@ -257,6 +265,14 @@ IN_THE_MESH: dict[str, tuple[Change, list[str]]] = {
     "a reaction of what holds nothing": (
         ('of = "middle.x"', 'of = "reaction.top.x"'),
         ["expect.[0].of: no quantity 'reaction.top.x'"],
+    ),
+    "nu of 1/2 without a pressure": (
+        ("nu = 0.3", "nu = 0.5"),
+        ["case.toml: region 'tissue' has nu = 1/2", "incompressible = true beside degree"],
+    ),
+    "a pressure of the same degree": (
+        ("degree = 2", "degree = 2\npressure_degree = 2"),
+        ["case.toml: degree = 2 with pressure_degree = 2", "pressure_degree=1"],
     ),
     "a point force beside every vertex": (
         ("[[probe]]", '[[load]]\ntype = "point"\nat = [9, 9, 9]\nforce = [0, 0, 1]\n\n[[probe]]'),

@@ -17,6 +17,8 @@ JOIN = re.compile(r"joins=\[\.\.\.\].*?Precedence\('(?P<moved>.*?)', over='(?P<o
 """The advice on two supports that collide, with the places it names."""
 HOLD = "Hold (Fixed, Moved, Prescribed)"
 """The advice on rigid motions that are left."""
+KEYS = {"incompressible=True": "incompressible = true", "unlocked(body)": "split_held_tets = true"}
+"""Advice that is one key at the head of the file."""
 
 
 @contextmanager
@@ -33,10 +35,10 @@ in the case file: [[support]] type = "fixed" on = "<place>" (each key on a line 
     try:
         yield
     except InputError as error:
-        raise type(error)(f"{name}: {error}{_as_written(str(error))}") from error
+        raise type(error)(f"{name}: {error}{as_written(str(error))}") from error
 
 
-def _as_written(message: str) -> str:
+def as_written(message: str) -> str:
     """How what a message advises is written in a case file; nothing where it advises nothing."""
     tables = ""
     if found := JOIN.search(message):
@@ -48,4 +50,7 @@ def _as_written(message: str) -> str:
         )
     elif HOLD in message:
         tables = '[[support]] type = "fixed" on = "<place>"'
-    return f"; in the case file: {tables} (each key on a line of its own)" if tables else ""
+    if tables:
+        return f"; in the case file: {tables} (each key on a line of its own)"
+    keys = [key for advice, key in KEYS.items() if advice in message]
+    return f"; in the case file: {', '.join(keys)} beside degree" if keys else ""

@@ -9,9 +9,11 @@ from math import radians
 from typing import Any
 
 from bezsoma.case import schema
+from bezsoma.case.advice import as_written
 from bezsoma.case.faults import Fault
 from bezsoma.case.lines import KeyPath
 from bezsoma.case.reading import Case
+from bezsoma.equations.locked import unlocked
 from bezsoma.errors import InputError, unknown
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.joins import Gap, Graded, Precedence
@@ -25,16 +27,20 @@ def body_of(case: Case, mesh: TetMesh, degree: int) -> Body:
     """The body of a case on its mesh, all names of which the mesh has (`names_missing`)."""
     file = case.file
     try:
-        return Body(
+        body = Body(
             mesh,
             degree=degree,
             materials={name: material.law() for name, material in file.materials.items()},
             supports=[made(table) for table in file.support],
             loads=[made(table) for table in file.load],
             joins=[made(table) for table in file.join],
+            pressure_degree=file.pressure_degree,
+            incompressible=file.incompressible,
+            pressure_breaks=file.pressure_breaks,
         )
+        return unlocked(body) if file.split_held_tets else body
     except InputError as error:
-        raise InputError(f"{case.path.name}: {error}") from None
+        raise InputError(f"{case.path.name}: {error}{as_written(str(error))}") from None
 
 
 @singledispatch

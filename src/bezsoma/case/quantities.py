@@ -4,9 +4,12 @@
     energy                        stored energy, N mm
     volume_change                 integral of div u, mm3
     largest_displacement          largest length of the displacement, mm
+    largest_divergence            largest |div u|, the volumetric strain of small strains
+    largest_determinant           largest |det(I + grad u) - 1|, the local change of volume
     PROBE.x  .y  .z  .size        displacement of a probe, mm
     PROBE.stress.xx ... .zx       Cauchy stress at a probe, MPa; PROBE.von_mises likewise
     PROBE.strain.xx ... .zx       strain at a probe (half the engineering shears)
+    PROBE.pressure                pressure there, MPa: of its own, else minus the mean stress
     reaction.PLACE.x ... .size    force of a support on the body, N
     moment.PLACE.x ... .size      its moment about the origin, N mm
 
@@ -26,12 +29,23 @@ from bezsoma.case.faults import nearest
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.solution import Solution
 
-WHOLE = ("energy", "volume_change", "largest_displacement")
+WHOLE = (
+    "energy",
+    "volume_change",
+    "largest_displacement",
+    "largest_divergence",
+    "largest_determinant",
+)
 OF_PLACE = ("reaction", "moment")
 AXES = ("x", "y", "z", "size")
 TENSORS = ("stress", "strain")
 ENTRIES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "zx": (2, 0)}
-OF_PROBE = (*AXES, "von_mises", *(f"{tensor}.{entry}" for tensor in TENSORS for entry in ENTRIES))
+OF_PROBE = (
+    *AXES,
+    "von_mises",
+    "pressure",
+    *(f"{tensor}.{entry}" for tensor in TENSORS for entry in ENTRIES),
+)
 
 
 def complaint(of: str, probes: Iterable[str], places: Iterable[str]) -> str | None:
@@ -72,8 +86,13 @@ class Measured:
     def _of_tensor(self, probe: str, detail: str) -> float:
         """An entry of the stress or strain, or the von Mises stress, at a probe."""
         tensor, _, entry = detail.partition(".")
+        pressure = self.solution.pressure
+        if detail == "pressure" and pressure is not None:
+            return float(pressure.at(self._point(probe), outside="nearest")[0])
         field = self._strain if tensor == "strain" else self._stress
         value = field.at(self._point(probe), outside="nearest").reshape(3, 3)
+        if detail == "pressure":
+            return -float(np.trace(value)) / 3
         if detail == "von_mises":
             deviator = value - np.trace(value) / 3 * np.eye(3)
             return float(np.sqrt(1.5 * (deviator**2).sum()))

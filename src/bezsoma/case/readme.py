@@ -12,6 +12,7 @@ MEANINGS = {
     "summary.json": "sizes, method, energy, reactions, probes, versions, for programs to read",
     "mesh.npz": "the mesh with its named regions and surfaces",
     "displacement.npz": "the displacement as Bernstein controls, which are not values at points",
+    "pressure.npz": "the pressure (MPa) as Bernstein controls, on its own net",
     "displacement.vtu": "the displacement for ParaView, on curved cells of its full degree",
 }
 DIRECTIONS = "x to the patient's left, y to the back, z up"
@@ -66,7 +67,22 @@ def _what(summary: Mapping[str, Any]) -> str:
         f"Iterations: {summary['iterations']}; residual relative to that at the start: "
         f"{summary['residual']:.1e}.\n"
         f"Stored energy: {summary['energy']:.6g} N mm; largest displacement anywhere: "
-        f"{summary['largest_displacement']:.3f} mm."
+        f"{summary['largest_displacement']:.3f} mm." + _volume(summary)
+    )
+
+
+def _volume(summary: Mapping[str, Any]) -> str:
+    """Pressure and change of volume of a mixed form; nothing without."""
+    if "pressure_degree" not in summary:
+        return ""
+    low, high = summary["pressure_range"]
+    degree = summary["pressure_degree"]
+    return (
+        f"\nPressure of degree {degree}, {low:.3g} to {high:.3g} MPa; its level is "
+        f"{summary['pressure_level']}.\nVolume: largest |div u| "
+        f"{summary['largest_divergence']:.2g} (the equations make its means vanish at nu = 1/2), "
+        f"largest |det(I + grad u) - 1| {summary['largest_determinant']:.2g} (not zero at small "
+        "strain)."
     )
 
 
@@ -92,4 +108,6 @@ def _picture(name: str) -> str:
     """What a file is that has no entry of its own."""
     if name.startswith("before-after"):
         return "before, after, how far each point moved (mm), and both outlines"
+    if name.endswith(".png"):
+        return f"{name.split('-')[0]} on the displaced surface"
     return "see the documentation"

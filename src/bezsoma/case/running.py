@@ -72,6 +72,7 @@ def run_case(
     mesh = mesh_of(case)
     probes = probe_points(case, mesh)
     body = body_of(case, mesh, case.file.degree if degree is None else degree)
+    mesh = body.mesh
     place.check_room(_size(body))
     table = case.file.solver
     with in_case(case.path.name):
@@ -82,7 +83,8 @@ def run_case(
     summary["seconds"] = perf_counter() - start
     with place.filling() as partial:
         write_results(partial, case, solution, summary, progress)
-    return Results(place.folder, mesh, solution.displacement, summary, case.text)
+    pressure = solution.pressure
+    return Results(place.folder, mesh, solution.displacement, summary, case.text, pressure)
 
 
 def _case(given: Any) -> Case:
@@ -113,7 +115,7 @@ def summary_of(case: Case, solution: Solution, probes: dict[str, Floats]) -> dic
         "regions": list(mesh.regions),
         "surfaces": {name: len(facets) for name, facets in mesh.surfaces.items()},
         "probes": probed,
-        "warnings": [*warnings(mesh, probed)],
+        "warnings": [*warnings(mesh, probed), *advice(solution)],
         "expectations": checked(case, degree, measured),
     }
 
@@ -126,6 +128,17 @@ def warnings(mesh: TetMesh, probed: Mapping[str, Mapping[str, Any]]) -> Iterator
     for name, probe in probed.items():
         if probe["off_by"] > FAR * size:
             yield f"the probe {name!r} was taken to its surface over {probe['off_by']:.3g} mm"
+
+
+def advice(solution: Solution) -> Iterator[str]:
+    """What would be better done otherwise."""
+    if solution.advice:
+        yield solution.advice
+    if solution.held_tets:
+        yield (
+            f"all four vertices of {solution.held_tets} tets are prescribed, and what can move "
+            "there is stiffened by its pressure; split_held_tets = true cuts them in four"
+        )
 
 
 def _size(body: Body) -> int:

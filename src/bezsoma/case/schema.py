@@ -97,6 +97,10 @@ Formulas = Annotated[tuple[Formula, Formula, Formula], BeforeValidator(_triple)]
 Vertex = Annotated[
     Annotated[Name, Tag("text")] | Annotated[Point, Tag("list")], Discriminator(_place_shape)
 ]
+Fields = Annotated[
+    tuple[Literal["pressure", "divergence", "determinant", "von_mises"], ...],
+    BeforeValidator(_names),
+]
 Views = Annotated[tuple[Annotated[str, AfterValidator(_view)], ...], BeforeValidator(_names)]
 Letters = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 
@@ -276,7 +280,7 @@ class PointForce(Table):
 class Solver(Table):
     """How to solve."""
 
-    method: Literal["auto", "direct", "multigrid", "cg"] = "auto"
+    method: Literal["auto", "direct", "multigrid", "cg", "minres"] = "auto"
     rtol: Annotated[float, Field(gt=0, lt=1)] = 1e-8
     threads: Annotated[int, Field(ge=0, le=1024, description="0: all cores")] | None = None
 
@@ -334,6 +338,8 @@ class Output(Table):
     """A sheet (before, after, how far it moved) for each of these views."""
     surface: Name | None = None
     """The surface that the pictures show; skin where there is one, else the whole boundary."""
+    fields: Fields = ()
+    """Further fields for the file of cells, and a picture of each from every view."""
 
 
 class CaseFile(Table):
@@ -341,6 +347,14 @@ class CaseFile(Table):
 
     title: str = ""
     degree: Degree = Field(description="the degree of the displacement, 1 to 10")
+    pressure_degree: Annotated[int, Field(ge=0, le=10)] | None = None
+    """The degree of a pressure of its own (the mixed form)."""
+    incompressible: bool = False
+    """The mixed form with a pressure of one degree less."""
+    pressure_breaks: bool = False
+    """Whether the pressure may jump between regions."""
+    split_held_tets: bool = False
+    """Whether tets all four vertices of which are prescribed are cut in four."""
     mesh: Mesh = Field(description="the table [mesh] says where the tets come from")
     materials: dict[Name, Material] = Field(
         min_length=1, description="a table [materials.REGION] for each region of the mesh"

@@ -5,20 +5,31 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from bezsoma.case.reading import Case
 from bezsoma.case.readme import readme
+from bezsoma.mesh.broken_field import BrokenField
+from bezsoma.mesh.field import Field
 from bezsoma.results import write_fields
 from bezsoma.results.archive import CASE
 from bezsoma.results.folder import SUMMARY
 from bezsoma.solvers.solution import Solution
-from bezsoma.view.picture import face_picture
+from bezsoma.view.picture import face_picture, picture
 from bezsoma.view.vtk import write_vtu
 
 README = "README.txt"
 VTU = "displacement.vtu"
+LABELS = {
+    "pressure": "pressure, MPa",
+    "divergence": "div u",
+    "determinant": "det(I + grad u) - 1",
+    "von_mises": "von Mises stress, MPa",
+}
 
 
 def write_results(
@@ -31,14 +42,16 @@ def write_results(
     """Write all files of a run into an empty folder; completes `summary` and writes it last."""
     progress("write", None, "mesh and controls")
     (folder / CASE).write_bytes(case.text.encode("utf-8"))
-    write_fields(folder, solution.displacement)
+    write_fields(folder, solution.displacement, solution.pressure)
     if case.file.output.vtu:
         progress("write", None, VTU)
         _write_vtu(folder / VTU, case, solution)
     if case.file.output.pictures:
         progress("write", None, "pictures")
         _write_pictures(folder, case, solution)
-    summary["pictures"] = [_picture(view) for view in case.file.output.pictures]
+    output = case.file.output
+    summary["pictures"] = [_picture(view) for view in output.pictures]
+    summary["pictures"] += [_picture(v, name) for name in output.fields for v in output.pictures]
     names = [path.name for path in folder.iterdir()]
     summary["files"] = sorted([*names, README, SUMMARY])
     (folder / README).write_text(readme(summary), encoding="utf-8")
@@ -49,6 +62,10 @@ def write_results(
 def _write_vtu(path: Path, case: Case, solution: Solution) -> None:
     """The displacement, and on request the stress, on cells of the displacement's degree."""
     fields: dict[str, Any] = {"displacement": solution.displacement}
+    if solution.pressure is not None:
+        fields["pressure"] = solution.pressure
+    for name in case.file.output.fields:
+        fields[name] = named(solution, name)
     if case.file.output.stress:
         fields["stress"] = solution.stress
     write_vtu(path, solution.body.mesh, fields, metadata={"title": case.title})
@@ -66,8 +83,29 @@ def _write_pictures(folder: Path, case: Case, solution: Solution) -> None:
             view=view,
             title=f"{case.title} (degree {solution.body.degree})",
         )
+    for name, view in product(output.fields, output.pictures):
+        picture(
+            folder / _picture(view, name),
+            solution.body.mesh,
+            named(solution, name),
+            displacement=solution.displacement,
+            surface=output.surface or ("skin" if "skin" in solution.body.mesh.surfaces else None),
+            view=view,
+            label=LABELS[name],
+            title=f"{case.title} (degree {solution.body.degree}): {LABELS[name]}",
+        )
 
 
-def _picture(view: str) -> str:
-    """The name of the sheet of a view."""
-    return f"before-after-{view.replace(' ', '-')}.png"
+def named(solution: Solution, name: str) -> Field | BrokenField:
+    """The field of a solution by its name in a case; where there is no pressure, -tr(stress)/3."""
+    if name != "pressure" or solution.pressure is not None:
+        field: Field | BrokenField = getattr(solution, name)
+        return field
+    stress = solution.stress
+    mean = np.trace(stress.controls, axis1=-2, axis2=-1) / 3
+    return BrokenField(stress.mesh, stress.degree, -mean)
+
+
+def _picture(view: str, of: str = "before-after") -> str:
+    """The name of the picture of a view."""
+    return f"{of}-{view.replace(' ', '-')}.png"

@@ -2,7 +2,9 @@
 """The files of a results folder that carry numbers, written and read back bit for bit.
 
 `mesh.npz` holds the mesh with its names; `displacement.npz` the degree, the control numbers of
-each tet `of_tet` (t, m) and the controls (c, 3) in mm. Numbers are stored as they are in memory,
+each tet `of_tet` (t, m) and the controls (c, 3) in mm; `pressure.npz`, where the pressure is an
+unknown of its own, the same with controls (c,) in MPa, or tet by tet (t, m) where it breaks between
+regions. Numbers are stored as they are in memory,
 never through text.
 """
 
@@ -17,6 +19,7 @@ import numpy as np
 
 from bezsoma.arrays import Floats, Ints
 from bezsoma.errors import InputError
+from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.mesh.files import read_mesh, write_mesh
@@ -25,6 +28,7 @@ from bezsoma.results.folder import FORMAT, SUMMARY
 
 MESH = "mesh.npz"
 DISPLACEMENT = "displacement.npz"
+PRESSURE = "pressure.npz"
 CASE = "case.toml"
 NOTICE = "BezSoma is research software and not a medical device."
 
@@ -42,10 +46,14 @@ class Results:
     """What summary.json says: sizes, method, energy, reactions, probes, versions."""
     case: str
     """The text of the case file, as it was when it ran."""
+    pressure: Field | BrokenField | None = None
+    """The pressure, MPa, where it was an unknown of its own."""
 
 
-def write_fields(folder: Path, displacement: Field) -> None:
-    """Write `mesh.npz` and `displacement.npz` into a folder."""
+def write_fields(
+    folder: Path, displacement: Field, pressure: Field | BrokenField | None = None
+) -> None:
+    """Write `mesh.npz` and `displacement.npz` into a folder, and `pressure.npz` if there is one."""
     net = displacement.net
     write_mesh(folder / MESH, net.mesh)
     np.savez(
@@ -55,6 +63,11 @@ def write_fields(folder: Path, displacement: Field) -> None:
         of_tet=net.of_tet.astype(np.int32),
         controls=displacement.controls,
     )
+    if pressure is not None:
+        stored: dict[str, Any] = {"degree": pressure.degree, "controls": pressure.controls}
+        if isinstance(pressure, Field):
+            stored["of_tet"] = pressure.net.of_tet
+        np.savez_compressed(folder / PRESSURE, notice=np.str_(NOTICE), **stored)
 
 
 def read_results(folder: Path | str) -> Results:
@@ -69,7 +82,8 @@ def read_results(folder: Path | str) -> Results:
             )
     mesh = read_mesh(folder / MESH)
     displacement = _displacement(folder / DISPLACEMENT, mesh)
-    return Results(folder, mesh, displacement, summary, _text(folder / CASE))
+    pressure = _pressure(folder / PRESSURE, mesh) if "pressure_degree" in summary else None
+    return Results(folder, mesh, displacement, summary, _text(folder / CASE), pressure)
 
 
 def _text(path: Path) -> str:
@@ -105,24 +119,61 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _displacement(path: Path, mesh: TetMesh) -> Field:
     """The field stored at `path`, on the net of `mesh`."""
+    stored = _stored(path)
+    return _continuous(path, mesh, (3,), *_named(path, stored, "degree", "controls", "of_tet"))
+
+
+def _pressure(path: Path, mesh: TetMesh) -> Field | BrokenField:
+    """The pressure stored at `path`, continuous or tet by tet."""
+    stored = _stored(path)
+    degree, controls, *_ = _named(path, stored, "degree", "controls")
+    if "of_tet" in stored:
+        return _continuous(path, mesh, (), degree, controls, stored["of_tet"])
+    try:
+        field = BrokenField(mesh, int(degree), controls)
+    except InputError as error:
+        raise InputError(f"{str(path)!r} does not fit the mesh beside it: {error}") from None
+    _finite(path, controls)
+    return field
+
+
+def _stored(path: Path) -> dict[str, Any]:
+    """The arrays of a file."""
     try:
         # Opened here, since numpy leaves a damaged file open.
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
-            degree, of_tet = int(stored["degree"]), stored["of_tet"]
-            controls = stored["controls"]
+            return {name: stored[name] for name in stored.files}
     except Exception as error:  # zip, zlib and NumPy each have their own ways to fail
         raise InputError(f"{str(path)!r} is damaged ({error}); run the case again") from error
-    net = ControlNet(mesh, degree)
+
+
+def _named(path: Path, stored: dict[str, Any], *names: str) -> list[Any]:
+    """Arrays that have to be there."""
+    missing = [name for name in names if name not in stored]
+    if missing:
+        raise InputError(f"{str(path)!r} is damaged ({missing} missing); run the case again")
+    return [stored[name] for name in names]
+
+
+def _continuous(
+    path: Path, mesh: TetMesh, shape: tuple[int, ...], degree: Any, controls: Floats, of_tet: Ints
+) -> Field:
+    """A continuous field with values of a shape, renumbered where need be."""
+    net = ControlNet(mesh, int(degree))
     numbered = np.array_equal(np.unique(of_tet), np.arange(net.count))
-    if not numbered or of_tet.shape != net.of_tet.shape or controls.shape != (net.count, 3):
+    if not numbered or of_tet.shape != net.of_tet.shape or controls.shape != (net.count, *shape):
         raise InputError(
             f"{str(path)!r} does not fit the mesh beside it: it holds controls of shape "
             f"{controls.shape} and tets of shape {of_tet.shape}, where degree {degree} on this "
-            f"mesh has {(net.count, 3)} and {net.of_tet.shape}; run the case again"
+            f"mesh has {(net.count, *shape)} and {net.of_tet.shape}; run the case again"
         )
+    _finite(path, controls)
+    return Field(net, _renumbered(controls, of_tet, net.of_tet))
+
+
+def _finite(path: Path, controls: Floats) -> None:
     if not np.isfinite(controls).all():
         raise InputError(f"{str(path)!r} is damaged: a control is not a number; run it again")
-    return Field(net, _renumbered(controls, of_tet, net.of_tet))
 
 
 def _renumbered(controls: Floats, stored: Ints, current: Ints) -> Floats:
