@@ -16,7 +16,7 @@ softmax of free numbers, and logarithms of weights: any guess lies inside and ha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
 from math import comb, factorial, prod
 
@@ -127,27 +127,7 @@ class Equations:
     @cached_property
     def basis(self) -> Floats:
         """Combinations (m, m) of the products of Chebyshev polynomials that are orthonormal."""
-        bary, weights = conical(2 * self.exactness, self.dim)
-        combination = np.eye(len(self.powers))
-        for _ in range(2):  # the second pass clears the rounding of the first
-            rows = self.products(elementary(bary)[0])[0] @ combination
-            upper = np.linalg.qr(rows * np.sqrt(weights)[:, None])[1]
-            combination = np.linalg.solve(upper.T, combination.T).T
-        return combination * np.sign(combination[0, 0])  # the first is 1, not -1
-
-    def products(self, e: Floats) -> tuple[Floats, Floats]:
-        """Chebyshev products at e (..., d): values (..., m), slopes in e (..., d, m)."""
-        values, slopes = [], []
-        for k in range(self.dim):
-            largest = comb(self.dim + 1, k + 2) / (self.dim + 1) ** (k + 2)
-            t, dt = chebyshev(2 * e[..., k] / largest - 1, int(self.powers[:, k].max()))
-            values.append(t[..., self.powers[:, k]])
-            slopes.append(dt[..., self.powers[:, k]] * (2 / largest))
-        slope = [
-            prod((slopes if k == j else values)[j] for j in range(self.dim))
-            for k in range(self.dim)
-        ]
-        return np.asarray(prod(values)), np.stack(slope, axis=-2)
+        return orthonormal(self.exactness, self.dim)
 
     def points(self, z: Floats) -> tuple[Floats, Floats, Floats]:
         """From unknowns (b, n): first points (b, o, d+1), shares (b, o, h), weights (b, o)."""
@@ -168,7 +148,7 @@ class Equations:
         """
         bary, share, weights = self.points(z)
         e, de = elementary(bary)
-        values, slopes = self.products(e)
+        values, slopes = products(e, self.powers)
         each = np.einsum("boki,ohi->bokh", de * bary[:, :, None], self.belongs)
         along = each - share[:, :, None] * each.sum(axis=3, keepdims=True)
         orbits, parts = self.shares.T
@@ -182,6 +162,31 @@ class Equations:
         defect = (values * weighted).sum(axis=1) @ self.basis
         defect[:, 0] -= 1
         return defect, slope.swapaxes(1, 2)
+
+
+@cache
+def orthonormal(exactness: int, dim: int) -> Floats:
+    """Combinations (m, m) of `products` whose mean products with each other are 1 or 0."""
+    bary, weights = conical(2 * exactness, dim)
+    rows = products(elementary(bary)[0], exponents(exactness, dim))[0]
+    combination = np.eye(rows.shape[1])
+    for _ in range(2):  # the second pass clears the rounding of the first
+        upper = np.linalg.qr(rows @ combination * np.sqrt(weights)[:, None])[1]
+        combination = np.linalg.solve(upper.T, combination.T).T
+    return combination * np.sign(combination[0, 0])  # the first is 1, not -1
+
+
+def products(e: Floats, powers: Ints) -> tuple[Floats, Floats]:
+    """Chebyshev products at e (..., d): values (..., m), slopes in e (..., d, m)."""
+    dim = powers.shape[1]
+    values, slopes = [], []
+    for k in range(dim):
+        largest = comb(dim + 1, k + 2) / (dim + 1) ** (k + 2)
+        t, dt = chebyshev(2 * e[..., k] / largest - 1, int(powers[:, k].max()))
+        values.append(t[..., powers[:, k]])
+        slopes.append(dt[..., powers[:, k]] * (2 / largest))
+    slope = [prod((slopes if k == j else values)[j] for j in range(dim)) for k in range(dim)]
+    return np.asarray(prod(values)), np.stack(slope, axis=-2)
 
 
 def chebyshev(x: Floats, degree: int) -> tuple[Floats, Floats]:
