@@ -49,7 +49,6 @@ def solve_cholesky(
     r: Floats,
     z: Floats,
 ) -> None: ...
-
 def orientations(
     points: Floats, tets: Ints, flat: float, largest: float
 ) -> npt.NDArray[np.int8]: ...

@@ -54,9 +54,7 @@ def packed(rows: Ints, count: int) -> Ints:
     return key
 
 
-def simplices(
-    tets: Ints, local: tuple[tuple[int, ...], ...], count: int
-) -> tuple[Int32s, Int32s]:
+def simplices(tets: Ints, local: tuple[tuple[int, ...], ...], count: int) -> tuple[Int32s, Int32s]:
     """The distinct simplices that `local` (`EDGES` or `FACES`) cuts out of ascending tets (t, 4).
 
     Their rows (s, k), ascending and in lexicographic order, and the numbers (t, 6) or (t, 4) of
