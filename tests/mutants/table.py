@@ -83,8 +83,8 @@ PYTHON = (
     Mutant(
         "two edges of a face exchanged, so that neighbours disagree",
         f"{MESH}/control_net.py",
-        "enumerate(((3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3)))",
-        "enumerate(((3, 4, 5), (1, 2, 5), (0, 4, 2), (0, 1, 3)))",
+        "EDGES_OF_FACES = np.array([(3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3)])",
+        "EDGES_OF_FACES = np.array([(3, 4, 5), (1, 2, 5), (0, 4, 2), (0, 1, 3)])",
         ("tests/laws/test_control_net.py", "tests/laws/test_fields.py"),
     ),
     Mutant(
