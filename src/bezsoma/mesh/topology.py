@@ -73,8 +73,8 @@ def simplices(tets: Ints, local: tuple[tuple[int, ...], ...], count: int) -> tup
 def numbers(rows: Ints, among: Ints | Int32s) -> Ints:
     """The number (r,) of each ascending row in the lexicographic list `among`; -1 where none.
 
-    >>> numbers(np.array([[1, 2], [0, 3]]), np.array([[0, 1], [1, 2], [2, 3]]))
-    array([ 1, -1])
+    >>> numbers(np.array([[1, 2], [0, 3]]), np.array([[0, 1], [1, 2], [2, 3]])).tolist()
+    [1, -1]
     """
     return _core.numbers_among(np.ascontiguousarray(rows), among)
 
