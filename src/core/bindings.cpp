@@ -219,7 +219,7 @@ auto components(In<std::int32_t, -1, 2> pairs, std::int64_t tets) {
     auto found = interruptible([&](bezsoma::Team &team) {
         return bezsoma::components(pairs.data(), rows_of(pairs), tets, team);
     });
-    return handed_over<std::int64_t, -1>(std::move(found), {static_cast<std::size_t>(tets)});
+    return handed_over<std::int32_t, -1>(std::move(found), {static_cast<std::size_t>(tets)});
 }
 
 auto numbers_among(In<std::int64_t, -1, -1> rows, In<std::int32_t, -1, -1> among) {

@@ -104,10 +104,11 @@ template <class Visit>
 Sparsity sparsity(Team &team, std::int64_t rows, std::int64_t columns, const Visit &visit) {
     constexpr std::size_t piece = 512;
     const std::size_t pieces = (size_of(rows) + piece - 1) / piece;
-    std::vector<std::vector<std::int32_t>> found(pieces), seen_by(team.size());
+    std::vector<std::vector<std::int32_t>> found(pieces), seen_by(team.size()), taken(team.size());
     Sparsity made{std::vector<std::int64_t>(size_of(rows) + 1), {}};
     team.run(pieces, [&](std::size_t p, std::size_t thread) {
-        std::vector<std::int32_t> &seen = seen_by[thread], &mine = found[p];
+        std::vector<std::int32_t> &seen = seen_by[thread], &mine = taken[thread];
+        mine.clear();
         if (seen.empty())
             seen.assign(size_of(columns), -1);
         for (std::size_t i = p * piece; i < std::min((p + 1) * piece, size_of(rows)); ++i) {
@@ -120,6 +121,7 @@ Sparsity sparsity(Team &team, std::int64_t rows, std::int64_t columns, const Vis
             std::sort(mine.begin() + static_cast<std::ptrdiff_t>(begin), mine.end());
             made.start[i + 1] = static_cast<std::int64_t>(mine.size() - begin);
         }
+        found[p] = mine; // of exactly this size, where one that grew may have twice as much
     });
     std::partial_sum(made.start.begin(), made.start.end(), made.start.begin());
     made.column.resize(size_of(made.start.back()));

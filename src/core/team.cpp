@@ -139,6 +139,9 @@ void Team::take_pieces(std::size_t thread) {
 }
 
 void Team::wait_for_jobs(std::size_t thread) {
+    // What a thread keeps of exceptions is taken from memory when first asked for; were there none
+    // left when a job throws for want of it, that would end the process.
+    [[maybe_unused]] const int none = std::uncaught_exceptions();
     std::uint32_t seen = 0;
     for (;;) {
         const auto called = [&] { return job_.load(std::memory_order_acquire) != seen; };

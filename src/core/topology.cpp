@@ -92,7 +92,7 @@ Neighbours neighbours(const std::int32_t *faces_of_tet, std::int64_t tets, std::
     return found;
 }
 
-std::vector<std::int64_t> components(const std::int32_t *pairs, std::int64_t faces,
+std::vector<std::int32_t> components(const std::int32_t *pairs, std::int64_t faces,
                                      std::int64_t tets, Team &team) {
     std::vector<std::int32_t> parent(size(tets)); // towards the lowest tet of the part
     std::iota(parent.begin(), parent.end(), 0);
@@ -107,8 +107,8 @@ std::vector<std::int64_t> components(const std::int32_t *pairs, std::int64_t fac
         const std::int32_t a = root(pairs[2 * f]), b = root(pairs[2 * f + 1]);
         parent[size(std::max(a, b))] = std::min(a, b);
     });
-    std::vector<std::int64_t> label(size(tets));
-    std::int64_t count = 0;
+    std::vector<std::int32_t> label(size(tets));
+    std::int32_t count = 0;
     in_turn(team, size(tets), [&](std::size_t t) {
         const auto least = size(root(static_cast<std::int32_t>(t)));
         label[t] = least == t ? count++ : label[least];

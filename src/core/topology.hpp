@@ -40,7 +40,7 @@ Neighbours neighbours(const std::int32_t *faces_of_tet, std::int64_t tets, std::
                       const std::int8_t *sign, Team &team);
 
 /// The part of each tet: parts hang together by faces and are numbered as their first tets are.
-std::vector<std::int64_t> components(const std::int32_t *pairs, std::int64_t faces,
+std::vector<std::int32_t> components(const std::int32_t *pairs, std::int64_t faces,
                                      std::int64_t tets, Team &team);
 
 /// The number of each row (rows, width) in a list in lexicographic order, -1 where it is not there.

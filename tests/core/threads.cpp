@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -181,9 +182,36 @@ bool survives_a_stop(const Mesh &mesh, const Kernels &kernels) {
     return stopped && f == again;
 }
 
+/// What pieces throw in several threads at once comes back as one error, and the team as before.
+bool hands_errors_back() {
+    Team team(4);
+    std::vector<int> done(500);
+    int caught = 0;
+    for (int round = 0; round < 50; ++round) {
+        try {
+            team.run(done.size(), [&](std::size_t piece, std::size_t) {
+                if (piece % 7 == 3)
+                    throw std::bad_alloc();
+                ++done[piece];
+            });
+        } catch (const std::bad_alloc &) {
+            ++caught;
+        }
+        std::ranges::fill(done, 0);
+        team.run(done.size(), [&](std::size_t piece, std::size_t) { ++done[piece]; });
+        if (!std::ranges::all_of(done, [](int times) { return times == 1; }))
+            return false;
+    }
+    return caught == 50;
+}
+
 } // namespace
 
 int main(int count, char **names) {
+    if (!hands_errors_back()) {
+        std::printf("a team lost an error, or was lost with it\n");
+        return 1;
+    }
     for (int which = 1; which < count; ++which) {
         const Kernels *kernels = kernels_named(names[which]);
         if (!kernels) {

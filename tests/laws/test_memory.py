@@ -16,7 +16,7 @@ from bezsoma.mesh import ControlNet, block
 from bezsoma.solvers import memory, solve
 from processes import prelude
 
-FACTOR = 2.0
+FACTOR = {"multigrid": 2.0, "cg": 2.0, "direct": 1.6}
 """How far an estimate may be from what is measured, either way."""
 
 MEASURED = """
@@ -70,13 +70,14 @@ CELLS = {
 
 
 @pytest.mark.parametrize("solver", CELLS)
-def test_the_estimate_is_right_within_a_factor_of_two(solver: str) -> None:
+def test_the_estimate_is_right_within_a_factor(solver: str) -> None:
+    factor = FACTOR[solver]
     found = measured(solver, CELLS[solver])
     assert [degree for degree, *_ in found] == list(CELLS[solver])
     wrong = {
         degree: f"{taken / told:.2f} of what is told for {unknowns} unknowns"
         for degree, unknowns, told, taken in found
-        if not told / FACTOR < taken < told * FACTOR
+        if not told / factor < taken < told * factor
     }
     assert wrong == {}
 

@@ -10,7 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezsoma.mesh.shape import FLAT, flat_tets, heights_and_lengths
+from bezsoma import _core
+from bezsoma.mesh.shape import FLAT, LARGEST, flat_tets, heights_and_lengths
+from bezsoma.mesh.topology import determinants
 
 ONE = np.array([[0, 1, 2, 3]])
 BASE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0.3, 0.3, 0]])
@@ -91,3 +93,24 @@ def test_height_and_length_of_the_regular_tet() -> None:
     height, length = heights_and_lengths(points[None])
     assert length == pytest.approx(np.sqrt(8))
     assert height == pytest.approx(length * np.sqrt(2 / 3))
+
+
+def test_a_height_within_the_rounding_of_large_coordinates_is_none() -> None:
+    """5e-10 mm are a height beside edges of 1 mm, and nothing that is known at 1e6 mm."""
+    thin = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 5e-10]])
+    tet = np.array([[0, 1, 2, 3]])
+    assert flat_tets(thin, tet)[1].tolist() == [False]
+    assert flat_tets(thin + 1e6, tet)[1].tolist() == [True]
+    assert flat_tets(thin[[1, 0, 2, 3]], tet)[0].tolist() == [-1]
+
+
+def test_the_few_that_are_in_doubt_are_looked_at_in_python() -> None:
+    """All but the flat and the nearly flat are decided by the core alone."""
+    rng = np.random.default_rng(5)
+    points = rng.standard_normal((4000, 3))
+    tets = np.arange(4000).reshape(-1, 4)
+    found = _core.orientations(points, tets, FLAT, LARGEST)
+    assert np.array_equal(found, np.sign(determinants(points[tets])))
+    points[3::4] = points[0::4] + 1e-12 * points[3::4]
+    assert not _core.orientations(points, tets, FLAT, LARGEST).any()
+    assert flat_tets(points, tets)[1].all()

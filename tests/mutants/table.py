@@ -35,6 +35,12 @@ CHOLESKY = ("tests/laws/test_cholesky.py",)
 MATRIX_FREE = ("tests/laws/test_matrix_free.py",)
 MULTIGRID = ("tests/laws/test_multigrid.py",)
 HARD = ("tests/faults/test_hard_problems.py",)
+TEAM = ("tests/faults/test_core.py",)
+MESHES = (
+    "tests/laws/test_mesh_tets.py",
+    "tests/laws/test_mesh_shape.py",
+    "tests/faults/test_meshes.py",
+)
 LOADS = ("tests/laws/test_loads.py", "tests/paper/test_equations.py")
 MIXED = ("tests/laws/test_mixed.py",)
 PRESSURE = ("tests/paper/test_mixed_equations.py", "tests/twins/test_taylor_hood.py")
@@ -93,8 +99,8 @@ PYTHON = (
     Mutant(
         "two edges of a face exchanged, so that neighbours disagree",
         f"{MESH}/control_net.py",
-        "enumerate(((3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3)))",
-        "enumerate(((3, 4, 5), (1, 2, 5), (0, 4, 2), (0, 1, 3)))",
+        "EDGES_OF_FACES = np.array([(3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3)])",
+        "EDGES_OF_FACES = np.array([(3, 4, 5), (1, 2, 5), (0, 4, 2), (0, 1, 3)])",
         ("tests/laws/test_control_net.py", "tests/laws/test_fields.py"),
     ),
     Mutant(
@@ -218,10 +224,33 @@ PYTHON = (
     ),
     Mutant(
         "the tets of an operator in the order of the file in place of the walk's",
-        f"{EQUATIONS}/matrix_free.py",
-        "net.starts[dim][entities[net.morton]].astype(np.int32)",
-        "net.starts[dim][entities].astype(np.int32)",
+        f"{MESH}/control_net.py",
+        "runs = self._starts_of(3, self.morton[part])",
+        "runs = self._starts_of(3, part)",
         MATRIX_FREE,
+    ),
+    Mutant(
+        "the edges of a face taken from a wrong face of its tet",
+        f"{MESH}/control_net.py",
+        "EDGES_OF_FACES[local]",
+        "EDGES_OF_FACES[3 - local]",
+        ("tests/laws/test_control_net.py",),
+    ),
+    Mutant(
+        "facets of a surface that keep the numbers from before points were dropped",
+        f"{MESH}/places.py",
+        """members(numbers(renumbered[rows], faces), rows, name, "surface", why)
+    return frozen(renumbered[rows])""",
+        """members(numbers(renumbered[rows], faces), rows, name, "surface", why)
+    return frozen(rows)""",
+        ("tests/laws/test_mesh_tets.py",),
+    ),
+    Mutant(
+        "a direct solve told to need half of what it takes",
+        f"{SOLVERS}/memory.py",
+        "int(22 * (3 * net.count)",
+        "int(9 * (3 * net.count)",
+        ("tests/laws/test_memory.py::test_the_estimate_is_right_within_a_factor",),
     ),
     Mutant(
         "supports that degree 1 does not see",
@@ -484,6 +513,48 @@ CPP = (
         "found.converged = norm <= rtol * reference * (1 + 1e-6);",
         "found.converged = true;",
         HARD,
+    ),
+    Mutant(
+        "an error in one thread of a team that nobody hears of",
+        f"{CORE}/team.cpp",
+        "std::rethrow_exception(std::exchange(failure_, nullptr));",
+        "failure_ = nullptr;",
+        TEAM,
+    ),
+    Mutant(
+        "a fork that waits for threads which its parent has",
+        f"{CORE}/team.cpp",
+        "        job_ = 0;\n        begin_threads();\n",
+        "        job_ = 0;\n",
+        TEAM,
+    ),
+    Mutant(
+        "long work that no signal stops",
+        f"{CORE}/team.hpp",
+        "begin += stretch) {\n        team.ask();\n",
+        "begin += stretch) {\n",
+        TEAM,
+    ),
+    Mutant(
+        "a fold that goes unseen in a mesh",
+        f"{CORE}/topology.cpp",
+        "&& side[face] != here;",
+        "&& side[face] < 2;",
+        MESHES,
+    ),
+    Mutant(
+        "parts joined by faces that are not found to be one",
+        f"{CORE}/topology.cpp",
+        "parent[size(std::max(a, b))] = std::min(a, b);",
+        "parent[size(pairs[2 * f + 1])] = pairs[2 * f];",
+        (*MESHES, "tests/faults/test_rigid_motions.py"),
+    ),
+    Mutant(
+        "a flat tet let through because one coordinate is large",
+        f"{CORE}/shape.cpp",
+        "std::max(flat * length, 4 * eps * coordinate)",
+        "flat * length",
+        MESHES,
     ),
     Mutant(
         "chunks that depend on the number of threads",

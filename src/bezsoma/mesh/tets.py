@@ -64,10 +64,9 @@ class TetMesh:
     """Mesh edges (e, 2) of each named edge place, rows ascending."""
     vertices: Mapping[str, Ints]
     """Vertex numbers (k,) of each named vertex place, ascending."""
-    tets_of_face: Int32s
-    """The tets (f, 2) at each of `all_faces`, the lower number first, -1 for no second."""
     dropped: int
     """How many of the points given belonged to no tet."""
+    _part: Int32s
 
     def __init__(
         self,
@@ -95,13 +94,14 @@ class TetMesh:
             dropped=int((~used).sum()),
         )
         pairs, sound = _core.neighbours(self.faces_of_tet, len(self.all_faces), signs)
-        self._hold(tets_of_face=frozen(pairs))
+        self._hold(tets_of_face=frozen(pairs), _part=_core.components(pairs, len(rows)))
         if not sound:
             faces = checks.Faces(self.tets, self.all_faces, self.faces_of_tet)
             checks.topology(faces, signs, np.flatnonzero(used))
         checks.one_namespace(surface=surfaces, edge=edges, vertex=vertices)
         self._hold_places(surfaces, edges, vertices, np.where(used, renumbered, -1))
-        del self.__dict__["_faces"]  # quickly found again; held, they would be much of the memory
+        for found_again in ("_faces", "tets_of_face"):  # quickly; held, they are much of the memory
+            del self.__dict__[found_again]
 
     def _hold(self, **values: Any) -> None:
         for name, value in values.items():
@@ -272,6 +272,12 @@ class TetMesh:
         return self._faces[1]
 
     @cached_property
+    def tets_of_face(self) -> Int32s:
+        """The tets (f, 2) at each face, the lower number first, -1 where there is no second."""
+        signs = np.ones(len(self.tets), np.int8)  # the mesh was checked
+        return frozen(_core.neighbours(self.faces_of_tet, len(self.all_faces), signs)[0])
+
+    @cached_property
     def boundary(self) -> Ints:
         """The facets (b, 3) that only one tet has, in lexicographic order."""
         return frozen(self.all_faces[self.tets_of_face[:, 1] < 0].astype(np.int64))
@@ -281,7 +287,7 @@ class TetMesh:
 
         Tets that share only a vertex or an edge are hinges, not one part.
         """
-        return _core.components(self.tets_of_face, len(self.tets))
+        return self._part.astype(np.int64)
 
     def tets_of_facets(self, facets: npt.ArrayLike) -> Ints:
         """The tet (f,) that has each facet (f, 3); of two, the one with the lower number."""

@@ -54,9 +54,7 @@ def packed(rows: Ints, count: int) -> Ints:
     return key
 
 
-def simplices(
-    tets: Ints, local: tuple[tuple[int, ...], ...], count: int
-) -> tuple[Int32s, Int32s]:
+def simplices(tets: Ints, local: tuple[tuple[int, ...], ...], count: int) -> tuple[Int32s, Int32s]:
     """The distinct simplices that `local` (`EDGES` or `FACES`) cuts out of ascending tets (t, 4).
 
     Their rows (s, k), ascending and in lexicographic order, and the numbers (t, 6) or (t, 4) of
@@ -75,8 +73,8 @@ def simplices(
 def numbers(rows: Ints, among: Ints | Int32s) -> Ints:
     """The number (r,) of each ascending row in the lexicographic list `among`; -1 where none.
 
-    >>> numbers(np.array([[1, 2], [0, 3]]), np.array([[0, 1], [1, 2], [2, 3]]))
-    array([ 1, -1])
+    >>> numbers(np.array([[1, 2], [0, 3]]), np.array([[0, 1], [1, 2], [2, 3]])).tolist()
+    [1, -1]
     """
     return _core.numbers_among(np.ascontiguousarray(rows), among)
 

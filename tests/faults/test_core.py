@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The core in bad company: memory that runs out, forks, callbacks and signals that come back."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bezsoma as bz
+from bezsoma.arrays import Floats
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.displacement import Equations
+from bezsoma.equations.element import lame_constants
+from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.mesh import ControlNet, block
+from bezsoma.solvers.multigrid import multigrid
+from processes import prelude
+
+BODY = """
+import os, resource, signal, time
+import numpy as np
+import bezsoma as bz
+from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.mesh import ControlNet, block
+def body(degree, cells):
+    supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]
+    return bz.Body(block(cells=cells), degree, bz.LinearElastic(1.0, 0.3), supports)
+"""
+
+
+def said(text: str) -> str:
+    """What a Python of its own prints, which has to end well."""
+    command = [sys.executable, "-S", "-c", prelude() + BODY + text]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=100)
+    assert done.returncode == 0, (done.returncode, done.stderr)
+    return done.stdout
+
+
+SCARCE = """
+def size():
+    return 1024 * int(open("/proc/self/status").read().split("VmSize:")[1].split()[0])
+net = ControlNet(block(cells=9), 3)
+operator = MatrixFree(net, np.array([[0.6, 0.4]]), 3)
+expected = operator @ net.points
+x = np.repeat(net.points[:, :, None], 64, axis=2)
+y = np.zeros_like(x)
+refused = 0
+for more in range(0, 200, 3):
+    resource.setrlimit(resource.RLIMIT_AS, (size() + more * 2**20, -1))
+    try:
+        operator.kernel.apply(x, y)
+    except MemoryError:
+        refused += 1
+    else:
+        break
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (-1, -1))
+    assert (operator @ net.points == expected).all()
+print(refused > 4, abs(y - expected[:, :, None]).max() < 1e-14)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of memory are set as on Linux")
+def test_memory_that_runs_out_within_a_job_is_an_error_and_not_the_end() -> None:
+    """In whichever thread scratch space is wanting: the team works on as before."""
+    assert said(SCARCE) == "True True\n"
+
+
+FORKED = """
+net = ControlNet(block(cells=6), 2)
+operator = MatrixFree(net, np.array([[0.6, 0.4]]), 3)
+expected = operator @ net.points
+for generation in range(3):  # a child of a child too
+    if os.fork():
+        break
+signal.alarm(60)
+right = (operator @ net.points == expected).all()
+right &= bz.solve(body(2, 5), solver="multigrid", threads=3).residual <= 1e-8
+tasks = len(os.listdir("/proc/self/task"))
+del operator
+if generation < 2 or os.getppid() != 1:
+    try:
+        right &= os.wait()[1] == 0
+    except ChildProcessError:
+        pass
+os._exit(0 if right and tasks == 3 else 1) if generation else print(right, tasks)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted as on Linux")
+def test_an_operator_works_on_in_a_fork() -> None:
+    """The child has the operator and none of its threads; it takes new ones."""
+    assert said(FORKED) == "True 3\n"
+
+
+def held(degree: int, cells: int) -> bz.Body:
+    """A block between two planes."""
+    supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]
+    return bz.Body(block(cells=cells), degree, bz.LinearElastic(1.0, 0.3), supports)
+
+
+def unsolved(degree: int, cells: int) -> tuple[Equations, Floats]:
+    """The equations of that block without a matrix, and the forces out of balance."""
+    body = held(degree, cells)
+    net = ControlNet(body.mesh, degree)
+    known = prescribed(body, net)
+    operator = MatrixFree(net, lame_constants(body), 2)
+    equations = Equations(
+        net, operator, np.zeros((net.count, 3)), known.mask, known.values, known.of_support
+    )
+    return equations, np.where(known.mask, 0.0, equations.residual(known.values))
+
+
+def solved(equations: Equations, b: Floats, report: Callable[[int, float], None]) -> Floats:
+    """The free displacement."""
+    assert isinstance(equations.stiffness, MatrixFree)
+    return multigrid(equations, equations.stiffness, b, 1e-8, report)[0]
+
+
+def test_a_report_may_use_the_operator_it_is_told_of() -> None:
+    """Who is told of an iteration holds the operator's lock already."""
+    equations, b = unsolved(3, 5)
+    expected, seen = equations.stiffness @ b, list[bool]()
+
+    def told(iteration: int, residual: float) -> None:
+        seen.append(bool((equations.stiffness @ b == expected).all()))
+
+    quiet = solved(equations, b, lambda iteration, residual: None)
+    assert np.array_equal(quiet, solved(equations, b, told))
+    assert len(seen) > 10 and all(seen)
+
+
+def test_a_signal_within_a_job_cannot_use_the_same_operator() -> None:
+    """It would take the threads out of the job that they are in: it is told so."""
+    equations, b = unsolved(4, 9)
+    operator, small = equations.stiffness, np.ones_like(b)
+    expected, met = operator @ small, []
+
+    def handler(number: int, frame: Any) -> None:
+        try:
+            assert (operator @ small == expected).all()
+        except RuntimeError as error:
+            met.append(str(error))
+
+    before = signal.signal(signal.SIGALRM, handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)
+    try:
+        for _ in range(20):
+            solved(equations, b, lambda iteration, residual: None)
+            if met:
+                break
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert met[0].startswith("a job on an operator's threads is under way")
+    assert (operator @ small == expected).all()
+
+
+STOPPED = """
+from collections import deque
+from functools import partial
+from bezsoma import _core
+def stop(number, frame):
+    raise KeyboardInterrupt
+signal.signal(signal.SIGALRM, stop)
+tets = np.arange(4 * 10**6).reshape(-1, 4) * 7919 % 200_003
+tets.sort(axis=1)
+kept = deque()  # map and extend are C: no byte code at which a signal could be heard runs between
+signal.setitimer(signal.ITIMER_REAL, 0.15)
+try:
+    kept.extend(map(partial(_core.simplices, tets, 200_003), [2, 3, 2, 3, 2, 3, 2, 3]))
+except KeyboardInterrupt:
+    print("stopped in", "the first" if not kept else f"number {len(kept)}")
+mesh = block(cells=5)
+print(len(_core.simplices(mesh.tets, len(mesh.points), 3)[0]) == len(mesh.all_faces))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such signals")
+def test_the_topology_of_a_large_mesh_can_be_stopped_within() -> None:
+    assert said(STOPPED) == "stopped in the first\nTrue\n"
+
+
+def test_an_error_of_a_report_leaves_the_operator_free() -> None:
+    def fails(stage: str, fraction: float | None, note: str) -> None:
+        if "iteration 3" in note:
+            raise KeyError("broken")
+
+    body: Any = held(2, 4)
+    with pytest.raises(KeyError):
+        bz.solve(body, solver="multigrid", progress=fails)
+    assert bz.solve(body, solver="multigrid").residual <= 1e-8
