@@ -26,7 +26,9 @@
 
 namespace bezsoma::BEZSOMA_ISA {
 
-#define BEZSOMA_INLINE inline __attribute__((always_inline))
+// Also for lambdas: left to itself the compiler stops inlining as the degrees add up.
+#define BEZSOMA_INLINED __attribute__((always_inline))
+#define BEZSOMA_INLINE inline BEZSOMA_INLINED
 
 /// `lanes` numbers in a register (Lanes) and anywhere in memory (Loose).
 template <class T, int lanes> struct Simd {
@@ -156,14 +158,14 @@ template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, 
     if constexpr (j > 0) {
         Lanes<T, lanes> lower[controls(j - 1)];
         each_control<j - 1, BEZSOMA_LADDER>(
-            [&](int p, int p1, int p2, int p3) { lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]); });
+            [&](int p, int p1, int p2, int p3) BEZSOMA_INLINED { lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]); });
         ladder<m, j - 1, T, lanes>(lower);
         if constexpr (j - 1 <= BEZSOMA_LADDER) {
             elevated<T, lanes, j>(y, lower, ladder_scales<m>.level + first);
         } else {
         for (int p = 0; p < controls(j); ++p)
             y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
-        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) {
+        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
             y[p] += lower[p];
             y[p1] += lower[p];
             y[p2] += lower[p];
@@ -298,7 +300,7 @@ BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *or
 /// of the lane's tet. May read some numbers past a control: pad the vector.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
-    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
         const T *from[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
@@ -338,7 +340,7 @@ BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
                             const Lanes<T, lanes> *f) {
-    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
         T *to[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
@@ -387,7 +389,7 @@ BEZSOMA_INLINE void stress_moments(const Batch<T, lanes> &tet, const Lanes<T, la
     constexpr int m = n - 1;
     const R lambda = tet.lambda * static_cast<T>(n * n);
     const R mu = tet.mu * static_cast<T>(n * n);
-    each_control<m>([&](int p, int p1, int p2, int p3) {
+    each_control<m>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         R h[3][3];
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
         const T top = static_cast<T>(ladder_scales<m>.top[p]);
@@ -421,7 +423,7 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
     for (int l = 0; l < 3; ++l)
         g0[l] = -(tet.g[0][l] + tet.g[1][l] + tet.g[2][l]);
     constexpr int voigt[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-    each_control<m>([&](int p, int p1, int p2, int p3) {
+    each_control<m>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         const T top = static_cast<T>(ladder_scales<m>.top[p]);
 #pragma GCC unroll 3
         for (int k = 0; k < 3; ++k) {
@@ -443,7 +445,7 @@ BEZSOMA_INLINE Lanes<T, lanes> elastic_work(const Batch<T, lanes> &tet, const La
     using R = Lanes<T, lanes>;
     R stress[6][controls(n - 1)], work = {};
     stress_moments<n, T, lanes>(tet, u, stress);
-    each_control<n - 1>([&](int p, int p1, int p2, int p3) {
+    each_control<n - 1>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         R h[3][3];
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
         work += static_cast<T>(ladder_scales<n - 1>.top[p]) *

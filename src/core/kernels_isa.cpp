@@ -75,14 +75,14 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
             tet.lambda = R{} + b.lame[2 * b.region[i * lanes + lane]];
             tet.mu = R{} + b.lame[2 * b.region[i * lanes + lane] + 1];
             for (int side = 0; side < sides; side += lanes) {
-                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) {
+                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
                         u[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
                 });
                 elastic_forces<n, T, lanes>(tet, u, f);
-                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) {
+                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     T *to = place(b.f, b.f_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
