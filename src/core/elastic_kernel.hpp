@@ -381,16 +381,34 @@ BEZSOMA_INLINE void gradient(const Batch<T, lanes> &tet, const Lanes<T, lanes> *
     }
 }
 
+/// What the batches to come will need first, called for line by line between sums: memory is slow,
+/// and a burst of calls would block the processor.
+template <int n, class T, int lanes> struct Ahead {
+    const T *u, *f;
+    static constexpr int line = 64 / sizeof(T);
+    static constexpr int lines = 1 + n * n * n * lanes / (2 * line * controls(n - 1));
+
+    BEZSOMA_INLINE void call(int p) const {
+#pragma GCC unroll 4
+        for (int k = 0; k < lines; ++k) {
+            __builtin_prefetch(u + (p * lines + k) * line);
+            __builtin_prefetch(f + (p * lines + k) * line, 1);
+        }
+    }
+};
+
 /// n times the moments sqrt(V) M T of the stress, in the scaled basis: XX YY ZZ XY YZ ZX.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void stress_moments(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
-                                   Lanes<T, lanes> (&stress)[6][controls(n - 1)]) {
+                                   Lanes<T, lanes> (&stress)[6][controls(n - 1)],
+                                   const Ahead<n, T, lanes> &ahead) {
     using R = Lanes<T, lanes>;
     constexpr int m = n - 1;
     const R lambda = tet.lambda * static_cast<T>(n * n);
     const R mu = tet.mu * static_cast<T>(n * n);
     each_control<m>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         R h[3][3];
+        ahead.call(p);
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
         const T top = static_cast<T>(ladder_scales<m>.top[p]);
         const R volumetric = lambda * (h[0][0] + h[1][1] + h[2][2]) * top;
@@ -409,11 +427,11 @@ BEZSOMA_INLINE void stress_moments(const Batch<T, lanes> &tet, const Lanes<T, la
 /// f[a] = K u[a] on every lane's tet: both by position, three components each.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
-                                   Lanes<T, lanes> *f) {
+                                   Lanes<T, lanes> *f, const Ahead<n, T, lanes> &ahead) {
     using R = Lanes<T, lanes>;
     constexpr int m = n - 1;
     R stress[6][controls(m)];
-    stress_moments<n, T, lanes>(tet, u, stress);
+    stress_moments<n, T, lanes>(tet, u, stress, ahead);
     // b + e_3 is met here first, all other controls begin their row: those are the ones to clear.
     for (int s3 = 0, p = 0; s3 <= n; ++s3)
         for (int s2 = 0; s2 <= s3; p += ++s2)
@@ -441,10 +459,11 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
 /// int tau : eps on every lane's tet. From gradients, not from u . f, so that a body that is
 /// carried far loses nothing.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE Lanes<T, lanes> elastic_work(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u) {
+BEZSOMA_INLINE Lanes<T, lanes> elastic_work(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
+                                             const T *u_next) {
     using R = Lanes<T, lanes>;
     R stress[6][controls(n - 1)], work = {};
-    stress_moments<n, T, lanes>(tet, u, stress);
+    stress_moments<n, T, lanes>(tet, u, stress, {u_next, u_next});
     each_control<n - 1>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         R h[3][3];
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
