@@ -124,7 +124,8 @@ template <int m> inline constexpr LadderScales<m> ladder_scales{};
 /// y of degree j becomes scale y + S lower, where S is the elevation of the scaled basis: every
 /// control takes what it shares with up to four below, in a tree, so that sums do not wait.
 template <class T, int lanes, int j, int s3 = 0, int s2 = 0, int s1 = 0>
-BEZSOMA_INLINE void elevated(Lanes<T, lanes> *y, const Lanes<T, lanes> *lower, const double *scale) {
+BEZSOMA_INLINE void elevated(Lanes<T, lanes> *y, const Lanes<T, lanes> *lower,
+                             const double *scale) {
     constexpr int p = position(s3, s2, s1);
     constexpr bool has[4] = {s3 < j, s2 < s3, s1 < s2, s1 > 0};
     constexpr int below[4] = {position(s3, s2, s1), position(s3 - 1, s2, s1),
@@ -157,21 +158,22 @@ template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, 
     constexpr int first = combinations(j + 3, 4);
     if constexpr (j > 0) {
         Lanes<T, lanes> lower[controls(j - 1)];
-        each_control<j - 1, BEZSOMA_LADDER>(
-            [&](int p, int p1, int p2, int p3) BEZSOMA_INLINED { lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]); });
+        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
+            lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]);
+        });
         ladder<m, j - 1, T, lanes>(lower);
         if constexpr (j - 1 <= BEZSOMA_LADDER) {
             elevated<T, lanes, j>(y, lower, ladder_scales<m>.level + first);
         } else {
-        for (int p = 0; p < controls(j); ++p)
-            y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
-        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
-            y[p] += lower[p];
-            y[p1] += lower[p];
-            y[p2] += lower[p];
-            y[p3] += lower[p];
-        });
-}
+            for (int p = 0; p < controls(j); ++p)
+                y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
+            each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
+                y[p] += lower[p];
+                y[p1] += lower[p];
+                y[p2] += lower[p];
+                y[p3] += lower[p];
+            });
+        }
     } else {
         y[0] *= static_cast<T>(ladder_scales<m>.level[0]);
     }
@@ -225,8 +227,8 @@ BEZSOMA_INLINE void transpose(Lanes<T, lanes> *rows) {
     }
 }
 
-/// Numbers travel between tets and lanes in squares of so many at most: wider ones would cross lines
-/// of the cache nearly always, and take more shuffles.
+/// Numbers travel between tets and lanes in squares of so many at most: wider ones would cross
+/// lines of the cache nearly always, and take more shuffles.
 template <int lanes> inline constexpr int square = lanes < 4 ? lanes : 4;
 
 /// Numbers from one lane's memory after those of another: loads, not shuffles.
@@ -460,7 +462,7 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
 /// carried far loses nothing.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE Lanes<T, lanes> elastic_work(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
-                                             const T *u_next) {
+                                            const T *u_next) {
     using R = Lanes<T, lanes>;
     R stress[6][controls(n - 1)], work = {};
     stress_moments<n, T, lanes>(tet, u, stress, {u_next, u_next});

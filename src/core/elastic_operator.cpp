@@ -203,7 +203,9 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
             scratch.resize(2 * least);
         Batches<T> b = batches(c);
         b.u = scratch.data();
-        b.u_end = foreign_of(chunk, u, 1, copied(u + 3 * chunk.control, 1, scratch.data(), 1, 3 * std::int64_t{chunk.owned}));
+        b.u_end = foreign_of(
+            chunk, u, 1,
+            copied(u + 3 * chunk.control, 1, scratch.data(), 1, 3 * std::int64_t{chunk.owned}));
         sums[c] = kernel_.work(b);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);

@@ -9,8 +9,8 @@ namespace bezsoma {
 /// Tets of one chunk in batches of one per lane, and the vectors they work on.
 ///
 /// first (batches, entities, lanes): the control at which each entity's run begins, among the own
-/// ones of the chunk, or below zero, counted from the end of its foreign ones; geometry (batches, 9,
-/// lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes); lame (regions, 2): lambda, mu.
+/// ones of the chunk, or below zero, counted from the end of its foreign ones; geometry (batches,
+/// 9, lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes); lame (regions, 2): lambda, mu.
 /// u, f (own controls, 3), u_end, f_end the ends of (foreign controls, 3). Past both parts of u 16
 /// numbers may be read but are not used. Own forces are cleared when a batch first meets them, met
 /// (batches,) being one past the own controls met so far; foreign ones are added to.

@@ -46,7 +46,8 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], sum = {};
     for (std::int64_t i = 0; i < b.count; ++i) {
         gather<n, T, lanes>(b, b.first + i * entities(n) * lanes, u);
-        sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u, b.u + 3 * std::int64_t{b.met[i]});
+        sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u,
+                                         b.u + 3 * std::int64_t{b.met[i]});
     }
     double all = 0;
     for (int l = 0; l < lanes; ++l)
