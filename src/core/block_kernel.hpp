@@ -40,7 +40,7 @@ template <int all, int lanes, int begin = 0, class F> BEZSOMA_INLINE void each_p
 template <int rows, int lanes>
 BEZSOMA_INLINE void rows_of_runs(const double *from, const std::int32_t *control,
                                  Lanes<double, lanes> *x) {
-    each_piece<rows, lanes>([&]<int begin, int piece>() {
+    each_piece<rows, lanes>([&]<int begin, int piece>() BEZSOMA_INLINED {
         Lanes<double, lanes> block[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)

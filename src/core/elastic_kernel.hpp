@@ -26,7 +26,9 @@
 
 namespace bezsoma::BEZSOMA_ISA {
 
-#define BEZSOMA_INLINE inline __attribute__((always_inline))
+// Also for lambdas: left to itself the compiler stops inlining as the degrees add up.
+#define BEZSOMA_INLINED __attribute__((always_inline))
+#define BEZSOMA_INLINE inline BEZSOMA_INLINED
 
 /// `lanes` numbers in a register (Lanes) and anywhere in memory (Loose).
 template <class T, int lanes> struct Simd {
@@ -156,15 +158,16 @@ template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, 
     constexpr int first = combinations(j + 3, 4);
     if constexpr (j > 0) {
         Lanes<T, lanes> lower[controls(j - 1)];
-        each_control<j - 1, BEZSOMA_LADDER>(
-            [&](int p, int p1, int p2, int p3) { lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]); });
+        each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
+            lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]);
+        });
         ladder<m, j - 1, T, lanes>(lower);
         if constexpr (j - 1 <= BEZSOMA_LADDER) {
             elevated<T, lanes, j>(y, lower, ladder_scales<m>.level + first);
         } else {
             for (int p = 0; p < controls(j); ++p)
                 y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
-            each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) {
+            each_control<j - 1, BEZSOMA_LADDER>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
                 y[p] += lower[p];
                 y[p1] += lower[p];
                 y[p2] += lower[p];
@@ -299,7 +302,7 @@ BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *or
 /// of the lane's tet. May read some numbers past a control: pad the vector.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
-    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
         const T *from[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
@@ -339,7 +342,7 @@ BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
                             const Lanes<T, lanes> *f) {
-    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) __attribute__((always_inline)) {
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
         T *to[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
@@ -380,16 +383,34 @@ BEZSOMA_INLINE void gradient(const Batch<T, lanes> &tet, const Lanes<T, lanes> *
     }
 }
 
+/// What the batches to come will need first, called for line by line between sums: memory is slow,
+/// and a burst of calls would block the processor.
+template <int n, class T, int lanes> struct Ahead {
+    const T *u, *f;
+    static constexpr int line = 64 / sizeof(T);
+    static constexpr int lines = 1 + n * n * n * lanes / (2 * line * controls(n - 1));
+
+    BEZSOMA_INLINE void call(int p) const {
+#pragma GCC unroll 4
+        for (int k = 0; k < lines; ++k) {
+            __builtin_prefetch(u + (p * lines + k) * line);
+            __builtin_prefetch(f + (p * lines + k) * line, 1);
+        }
+    }
+};
+
 /// n times the moments sqrt(V) M T of the stress, in the scaled basis: XX YY ZZ XY YZ ZX.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void stress_moments(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
-                                   Lanes<T, lanes> (&stress)[6][controls(n - 1)]) {
+                                   Lanes<T, lanes> (&stress)[6][controls(n - 1)],
+                                   const Ahead<n, T, lanes> &ahead) {
     using R = Lanes<T, lanes>;
     constexpr int m = n - 1;
     const R lambda = tet.lambda * static_cast<T>(n * n);
     const R mu = tet.mu * static_cast<T>(n * n);
-    each_control<m>([&](int p, int p1, int p2, int p3) {
+    each_control<m>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         R h[3][3];
+        ahead.call(p);
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
         const T top = static_cast<T>(ladder_scales<m>.top[p]);
         const R volumetric = lambda * (h[0][0] + h[1][1] + h[2][2]) * top;
@@ -421,7 +442,7 @@ BEZSOMA_INLINE void forces_of_moments(const Batch<T, lanes> &tet,
     for (int l = 0; l < 3; ++l)
         g0[l] = -(tet.g[0][l] + tet.g[1][l] + tet.g[2][l]);
     constexpr int voigt[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-    each_control<m>([&](int p, int p1, int p2, int p3) {
+    each_control<m>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         const T top = static_cast<T>(ladder_scales<m>.top[p]);
 #pragma GCC unroll 3
         for (int k = 0; k < 3; ++k) {
@@ -439,20 +460,21 @@ BEZSOMA_INLINE void forces_of_moments(const Batch<T, lanes> &tet,
 /// f[a] = K u[a] on every lane's tet: both by position, three components each.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
-                                   Lanes<T, lanes> *f) {
+                                   Lanes<T, lanes> *f, const Ahead<n, T, lanes> &ahead) {
     Lanes<T, lanes> stress[6][controls(n - 1)];
-    stress_moments<n, T, lanes>(tet, u, stress);
+    stress_moments<n, T, lanes>(tet, u, stress, ahead);
     forces_of_moments<n, T, lanes>(tet, stress, f);
 }
 
 /// int tau : eps on every lane's tet. From gradients, not from u . f, so that a body that is
 /// carried far loses nothing.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE Lanes<T, lanes> elastic_work(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u) {
+BEZSOMA_INLINE Lanes<T, lanes> elastic_work(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
+                                            const T *u_next) {
     using R = Lanes<T, lanes>;
     R stress[6][controls(n - 1)], work = {};
-    stress_moments<n, T, lanes>(tet, u, stress);
-    each_control<n - 1>([&](int p, int p1, int p2, int p3) {
+    stress_moments<n, T, lanes>(tet, u, stress, {u_next, u_next});
+    each_control<n - 1>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         R h[3][3];
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
         work += static_cast<T>(ladder_scales<n - 1>.top[p]) *

@@ -23,29 +23,21 @@ BEZSOMA_INLINE Batch<T, lanes> batch_of_tets(const Batches<T> &b, std::int64_t i
     return tet;
 }
 
-/// Clears the own forces that batch i is the first to meet, and calls for memory some batches
-/// ahead, which hides how long it takes: controls are numbered as they are met.
-template <class T> BEZSOMA_INLINE void meet(const Batches<T> &b, std::int64_t i, int row) {
-    constexpr int ahead = 4, line = 64 / sizeof(T);
+/// Clears the own forces that batch i is the first to meet.
+template <class T> BEZSOMA_INLINE void clear(const Batches<T> &b, std::int64_t i, int row) {
     const std::int64_t begin = i > 0 ? b.met[i - 1] : 0;
     for (std::int64_t k = begin * row; k < std::int64_t{b.met[i]} * row; ++k)
         b.f[k] = 0;
-    if (i + ahead >= b.count)
-        return;
-    for (std::int64_t k = std::int64_t{b.met[i + ahead - 1]} * row;
-         k < std::int64_t{b.met[i + ahead]} * row; k += line) {
-        __builtin_prefetch(b.u + k);
-        __builtin_prefetch(b.f + k, 1);
-    }
 }
 
 template <int n, class T, int lanes> void apply(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], f[3 * controls(n)];
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
-        meet(b, i, 3);
+        clear(b, i, 3);
         gather<n, T, lanes>(b, first, u);
-        elastic_forces<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u, f);
+        const std::int64_t next = 3 * std::int64_t{b.met[i]};
+        elastic_forces<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u, f, {b.u + next, b.f + next});
         scatter<n, T, lanes>(b, first, f);
     }
 }
@@ -54,7 +46,8 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], sum = {};
     for (std::int64_t i = 0; i < b.count; ++i) {
         gather<n, T, lanes>(b, b.first + i * entities(n) * lanes, u);
-        sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u);
+        sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u,
+                                         b.u + 3 * std::int64_t{b.met[i]});
     }
     double all = 0;
     for (int l = 0; l < lanes; ++l)
@@ -66,7 +59,7 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
     using R = Lanes<T, lanes>;
     R u[3 * controls(n)], f[3 * controls(n)];
     for (std::int64_t i = 0; i < b.count; ++i) {
-        meet(b, i, 3 * sides);
+        clear(b, i, 3 * sides);
         for (int lane = 0; lane < lanes; ++lane) {
             const std::int32_t *first = b.first + i * entities(n) * lanes;
             Batch<T, lanes> tet = {};
@@ -74,15 +67,16 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
                 tet.g[k / 3][k % 3] = R{} + b.geometry[(9 * i + k) * lanes + lane];
             tet.lambda = R{} + b.lame[2 * b.region[i * lanes + lane]];
             tet.mu = R{} + b.lame[2 * b.region[i * lanes + lane] + 1];
+            const std::int64_t next = 3 * std::int64_t{b.met[i]} * sides;
             for (int side = 0; side < sides; side += lanes) {
-                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) {
+                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
                         u[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
                 });
-                elastic_forces<n, T, lanes>(tet, u, f);
-                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) {
+                elastic_forces<n, T, lanes>(tet, u, f, {b.u + next, b.f + next});
+                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     T *to = place(b.f, b.f_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
