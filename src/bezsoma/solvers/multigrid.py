@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from bezsoma import _core
-from bezsoma.arrays import Bools, Floats
+from bezsoma.arrays import Bools, Floats, Int32s
 from bezsoma.equations.displacement import Equations
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.errors import NotConverged
@@ -28,17 +28,30 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     costs no iteration; held (c, 3) says which components are prescribed.
     """
     net = operator.net
+    # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
+    stiff = float(np.abs(operator.lame).max() * np.cbrt(net.mesh.volumes.mean()))
+    first = net.walked()
+    corners, places, held_vertices = degree_one(net, held, first)
+    walk = operator.walk(stiff, first)
+    return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
+
+
+def degree_one(
+    net: ControlNet, held: Bools, first: Int32s | None = None
+) -> tuple[Int32s, Floats, Bools]:
+    """What the problem of degree 1 on the same tets is made from.
+
+    The rows of each tet's vertices (t, 4), tets in the order of the walk; the places of the rows
+    (v, 3) mm; and which of their components are held (v, 3). `first` are the `walked` controls of
+    the net, if at hand.
+    """
     vertices = net if net.degree == 1 else ControlNet(net.mesh, 1)
     held_vertices = np.empty((vertices.count, 3), dtype=bool)
     held_vertices[vertices.starts[0]] = held[net.starts[0]]
     places = np.empty((vertices.count, 3))
     places[vertices.starts[0]] = net.mesh.points
-    # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
-    stiff = float(np.abs(operator.lame).max() * np.cbrt(net.mesh.volumes.mean()))
-    first = net.walked()
-    corners = first if net.degree == 1 else vertices.walked()
-    walk = operator.walk(stiff, first)
-    return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
+    corners = vertices.walked() if first is None or net.degree > 1 else first
+    return corners, places, held_vertices
 
 
 def multigrid(
