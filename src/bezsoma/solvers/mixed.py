@@ -21,6 +21,7 @@ from bezsoma.equations.rigid import refuse_rigid_motions
 from bezsoma.equations.stress import volume_change
 from bezsoma.errors import InputError, NotConverged
 from bezsoma.mechanics.body import Body
+from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
@@ -32,6 +33,10 @@ from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.watch import Watch, in_range
 
 MIXED_SOLVERS = ("auto", "direct", "minres")
+LOCKED_FROM = 0.45
+"""Poisson's ratio from which linear tets miss a quarter of the work of a load."""
+CHEAPER_FROM = {2: 0.45, 3: 0.49, 4: 0.49, 5: 0.499, 6: 0.499, 7: 0.499, 8: 0.499}
+"""Poisson's ratio from which the mixed form is the cheaper one, by degree."""
 DIRECT_UP_TO = 6000
 """Unknowns up to which the direct solver is chosen for the mixed form."""
 
@@ -159,6 +164,27 @@ def _pressure(body: Body, net: ControlNet, p: Floats) -> Field | BrokenField:
     if net.mesh is body.mesh:
         return Field(net, p)
     return BrokenField(body.mesh, net.degree, frozen(p[net.of_tet]))
+
+
+def advice(body: Body) -> str:
+    """What to do better with a displacement form close to nu = 1/2; nothing where it is as good.
+
+    The numbers are those of experiments/locking.py: from there on the mixed form of the same degree
+    takes less time for the same error.
+    """
+    nus = [law.nu for law in body.material_of_region if isinstance(law, LinearElastic)]
+    worst = max(nus, default=0.0)
+    if body.degree == 1 and worst >= LOCKED_FROM:
+        return (
+            f"nu = {worst:g} at degree 1: linear tets lock, and the answer is much too stiff; take "
+            "degree 2 or more, best with a pressure of its own, Body(..., incompressible=True)"
+        )
+    if body.degree in CHEAPER_FROM and worst >= CHEAPER_FROM[body.degree]:
+        return (
+            f"nu = {worst:g} at degree {body.degree}: from nu = {CHEAPER_FROM[body.degree]:g} on "
+            "the mixed form takes less time for the same error; Body(..., incompressible=True)"
+        )
+    return ""
 
 
 def mixed_choice(free: int, solver: str) -> tuple[str, str]:

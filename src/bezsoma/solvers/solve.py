@@ -24,7 +24,7 @@ from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import direct
 from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_cholesky
 from bezsoma.solvers.memory import refuse_what_does_not_fit
-from bezsoma.solvers.mixed import mixed_solution
+from bezsoma.solvers.mixed import advice, mixed_solution
 from bezsoma.solvers.multigrid import multigrid
 from bezsoma.solvers.solution import Solution, reactions
 from bezsoma.solvers.watch import Progress, Watch, in_range
@@ -235,4 +235,5 @@ def _solution(
         found.history[-1] if found.history else 0.0,
         equations.free,
         watch.timings,
+        advice=advice(body),
     )
