@@ -117,4 +117,30 @@ class Multigrid:
     @property
     def bytes(self) -> int: ...
 
+class Saddle:
+    def __init__(
+        self,
+        form: MixedFree,
+        walk: Walk,
+        corners: Int32s,
+        points: Floats,
+        held: Bools,
+        held_vertices: Bools,
+        weight: Floats,
+        levels: Floats,
+    ) -> None: ...
+    def solve(
+        self,
+        f: Floats,
+        g: Floats,
+        u: Floats,
+        p: Floats,
+        volume_weight: float,
+        rtol: float,
+        most: int,
+        report: Callable[[int, float], None],
+    ) -> tuple[list[float], float, bool, bool, bool]: ...
+    @property
+    def bytes(self) -> int: ...
+
 def instruction_sets() -> list[str]: ...

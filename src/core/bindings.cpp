@@ -21,6 +21,7 @@
 #include "elasticity.hpp"
 #include "mixed_operator.hpp"
 #include "preconditioner.hpp"
+#include "saddle.hpp"
 #include "simplex.hpp"
 #include "vertex_matrix.hpp"
 
@@ -312,7 +313,7 @@ public:
         const std::vector<double> weights(weight.data(), weight.data() + weight.size());
         nb::gil_scoped_release released;
         const std::lock_guard turn(turn_);
-        operator_->mass(weights, p.data(), g.data());
+        operator_->on_pressure(&bezsoma::PressureKernel::mass, weights, p.data(), g.data());
     }
 
     bezsoma::MixedOperator &form() { return *operator_; }
@@ -417,6 +418,71 @@ private:
     std::unique_ptr<bezsoma::Aggregation> aggregation_;
 };
 
+/// What solves with a MixedFree: its displacement's blocks and multigrid, its pressure's mass.
+class Saddle {
+public:
+    /// The walk's moduli are the lambda and mu of the displacement's preconditioner.
+    Saddle(MixedFree &form, const Walk &walk, In<std::int32_t, -1, 4> corners,
+           In<double, -1, 3> points, In<bool, -1, 3> held, In<bool, -1, 3> held_vertices,
+           In<double, -1> weight, In<double, -1, -1> levels)
+        : form_(form) {
+        const bezsoma::ElasticTets tets = walk.tets();
+        const auto vertices = static_cast<std::int64_t>(points.shape(0));
+        require(corners.shape(0) == walk.corners.shape(0) &&
+                    held.shape(0) == static_cast<std::size_t>(form.form().controls()) &&
+                    held_vertices.shape(0) == points.shape(0) &&
+                    static_cast<std::int64_t>(weight.size()) == form.form().regions() &&
+                    levels.shape(1) == static_cast<std::size_t>(form.form().pressures()),
+                "corners, held, weight and levels must fit the tets, controls and regions");
+        held_.assign(held.data(), held.data() + held.size());
+        const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
+                                                    held_vertices.data() + held_vertices.size());
+        const std::vector<double> weights(weight.data(), weight.data() + weight.size());
+        const std::vector<double> out(levels.data(), levels.data() + levels.size());
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(form_.turn());
+        blocks_ = std::make_unique<bezsoma::Preconditioner>(tets, corners.data(), vertices,
+                                                            held_.data(), form.form().chunks(),
+                                                            form.kernels(), form.team());
+        aggregation_ = std::make_unique<bezsoma::Aggregation>(
+            bezsoma::vertex_matrix(tets, corners.data(), vertices, at_vertices.data(), form.team()),
+            points.data(), at_vertices.data(), form.team());
+        pressure_ = std::make_unique<bezsoma::PressureInverse>(form.form(), weights, out,
+                                                               form.team());
+    }
+
+    auto solve(In<double, -1, 3> f, In<double, -1> g, Vectors u, Scalars p, double volume_weight,
+               double rtol, int most, const std::function<void(int, double)> &report) {
+        require(form_.fits(f, g) && form_.fits(u, p), "f, u and g, p must have one row a control");
+        bezsoma::Convergence found;
+        {
+            nb::gil_scoped_release released;
+            const std::lock_guard turn(form_.turn());
+            bezsoma::Search search{
+                blocks_.get(), [&](const float *r, float *z) { aggregation_->apply(r, z); },
+                form_.team()};
+            found = bezsoma::saddle(
+                form_.form(), search, *pressure_,
+                {held_.data(), f.data(), g.data(), volume_weight, rtol, most}, u.data(), p.data(),
+                form_.team(), [&](int iteration, double residual) {
+                    nb::gil_scoped_acquire held;
+                    report(iteration, residual);
+                });
+        }
+        return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite,
+                              found.rounded);
+    }
+
+    std::size_t bytes() const { return blocks_->bytes() + aggregation_->bytes(); }
+
+private:
+    MixedFree &form_;
+    std::vector<std::uint8_t> held_;
+    std::unique_ptr<bezsoma::Preconditioner> blocks_;
+    std::unique_ptr<bezsoma::Aggregation> aggregation_;
+    std::unique_ptr<bezsoma::PressureInverse> pressure_;
+};
+
 } // namespace
 
 NB_MODULE(_core, m) {
@@ -464,6 +530,14 @@ NB_MODULE(_core, m) {
         .def("apply", &Multigrid::apply, "r"_a, "z"_a)
         .def_prop_ro("levels", &Multigrid::levels)
         .def_prop_ro("bytes", &Multigrid::bytes);
+    nb::class_<Saddle>(m, "Saddle")
+        .def(nb::init<MixedFree &, const Walk &, In<std::int32_t, -1, 4>, In<double, -1, 3>,
+                      In<bool, -1, 3>, In<bool, -1, 3>, In<double, -1>, In<double, -1, -1>>(),
+             "form"_a, "walk"_a, "corners"_a, "points"_a, "held"_a, "held_vertices"_a, "weight"_a,
+             "levels"_a, nb::keep_alive<1, 2>())
+        .def("solve", &Saddle::solve, "f"_a, "g"_a, "u"_a, "p"_a, "volume_weight"_a, "rtol"_a,
+             "most"_a, "report"_a)
+        .def_prop_ro("bytes", &Saddle::bytes);
     m.def("instruction_sets", [] {
         std::vector<std::string> found;
         for (const char *name : {"avx512", "avx2", "baseline"})

@@ -5,49 +5,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "pieces.hpp"
+
 namespace bezsoma {
 
 namespace {
 
-constexpr std::size_t piece = 16384; // numbers a thread takes at a time; sums add piece by piece
 constexpr std::size_t padding = 16;
 constexpr int most_beginnings = 3; // from the true residual, before rounding is taken as the reason
-
-template <class Work> void each(Team &team, std::size_t length, const Work &work) {
-    team.run((length + piece - 1) / piece, [&](std::size_t p, std::size_t) {
-        for (std::size_t i = p * piece; i < std::min((p + 1) * piece, length); ++i)
-            work(i);
-    });
-}
-
-/// Vectors of one length, worked on in pieces that do not depend on the number of threads.
-class Pieces {
-public:
-    Pieces(std::size_t length, Team &team)
-        : length_(length), team_(team), sums_((length + piece - 1) / piece) {}
-
-    /// The sum over all i of term(i), which may also write at i.
-    template <class Term> double sum(const Term &term) {
-        team_.run(sums_.size(), [&](std::size_t p, std::size_t) {
-            // Eight partial sums let the processor overlap additions.
-            double part[8] = {};
-            const std::size_t end = std::min((p + 1) * piece, length_);
-            std::size_t i = p * piece;
-            for (; i + 8 <= end; i += 8)
-                for (std::size_t l = 0; l < 8; ++l)
-                    part[l] += term(i + l);
-            for (; i < end; ++i)
-                part[0] += term(i);
-            sums_[p] = std::accumulate(part, part + 8, 0.0);
-        });
-        return std::accumulate(sums_.begin(), sums_.end(), 0.0);
-    }
-
-private:
-    std::size_t length_;
-    Team &team_;
-    std::vector<double> sums_;
-};
 
 } // namespace
 
@@ -57,7 +22,7 @@ double Search::take(const double *r, double norm, std::size_t length) {
         blocks = blocks_->forward(r, norm, r_);
     } else {
         r_.resize(length);
-        each(team_, length, [&](std::size_t i) { r_[i] = static_cast<float>(r[i] / norm); });
+        each_number(team_, length, [&](std::size_t i) { r_[i] = static_cast<float>(r[i] / norm); });
     }
     z_.resize(r_.size());
     vertices_(r_.data(), z_.data());
@@ -68,7 +33,7 @@ void Search::follow(double norm, double beta, double *p) {
     if (blocks_)
         blocks_->back(z_, norm, beta, p);
     else
-        each(team_, z_.size(), [&](std::size_t i) { p[i] = beta * p[i] + norm * double{z_[i]}; });
+        each_number(team_, z_.size(), [&](std::size_t i) { p[i] = beta * p[i] + norm * double{z_[i]}; });
 }
 
 Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner *blocks,

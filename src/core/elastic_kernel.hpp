@@ -108,16 +108,18 @@ template <int m> struct LadderScales {
 template <int m> inline constexpr LadderScales<m> ladder_scales{};
 
 /// The levels below j of the ladder: y of degree j comes in, and goes out as
-/// level_j y + S (ladder of S^T y), where S is the elevation of the scaled basis.
-template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, lanes> *y) {
+/// level_j y + S (ladder of S^T y), where S is the elevation of the scaled basis. Other levels than
+/// those of the mass matrix make other matrices of the same kind.
+template <int m, int j, class T, int lanes, const auto &scales = ladder_scales<m>>
+BEZSOMA_INLINE void ladder(Lanes<T, lanes> *y) {
     constexpr int first = combinations(j + 3, 4);
     if constexpr (j > 0) {
         Lanes<T, lanes> lower[controls(j - 1)];
         each_control<j - 1>(
             [&](int p, int p1, int p2, int p3) { lower[p] = (y[p] + y[p1]) + (y[p2] + y[p3]); });
-        ladder<m, j - 1, T, lanes>(lower);
+        ladder<m, j - 1, T, lanes, scales>(lower);
         for (int p = 0; p < controls(j); ++p)
-            y[p] *= static_cast<T>(ladder_scales<m>.level[first + p]);
+            y[p] *= static_cast<T>(scales.level[first + p]);
         each_control<j - 1>([&](int p, int p1, int p2, int p3) {
             y[p] += lower[p];
             y[p1] += lower[p];
@@ -125,7 +127,7 @@ template <int m, int j, class T, int lanes> BEZSOMA_INLINE void ladder(Lanes<T, 
             y[p3] += lower[p];
         });
     } else {
-        y[0] *= static_cast<T>(ladder_scales<m>.level[0]);
+        y[0] *= static_cast<T>(scales.level[0]);
     }
 }
 

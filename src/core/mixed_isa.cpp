@@ -11,18 +11,24 @@
 namespace bezsoma::BEZSOMA_ISA {
 
 #define BEZSOMA_MIXED(n)                                                                           \
-    {mixed_apply<n, BEZSOMA_BYTES / 8>, mixed_work<n, BEZSOMA_BYTES / 8>,                          \
-     pressure_mass<n, BEZSOMA_BYTES / 8>}
+    {mixed_apply<n, BEZSOMA_BYTES / 8>, mixed_couple<n, BEZSOMA_BYTES / 8>,                        \
+     mixed_work<n, BEZSOMA_BYTES / 8>}
+#define BEZSOMA_PRESSURE(m)                                                                        \
+    {on_pressure<m, BEZSOMA_BYTES / 8, OnPressure::mass>,                                          \
+     on_pressure<m, BEZSOMA_BYTES / 8, OnPressure::inverse>,                                       \
+     on_pressure<m, BEZSOMA_BYTES / 8, OnPressure::diagonal>}
 
 extern const MixedKernels mixed_kernels;
 constinit const MixedKernels mixed_kernels = {
-    {{nullptr, nullptr, pressure_mass<1, BEZSOMA_BYTES / 8>},
+    {{},
      BEZSOMA_MIXED(2),
      BEZSOMA_MIXED(3),
      BEZSOMA_MIXED(4),
      BEZSOMA_MIXED(5),
      BEZSOMA_MIXED(6),
      BEZSOMA_MIXED(7),
-     BEZSOMA_MIXED(8)}};
+     BEZSOMA_MIXED(8)},
+    {BEZSOMA_PRESSURE(1), BEZSOMA_PRESSURE(2), BEZSOMA_PRESSURE(3), BEZSOMA_PRESSURE(4),
+     BEZSOMA_PRESSURE(5), BEZSOMA_PRESSURE(6), BEZSOMA_PRESSURE(7)}};
 
 } // namespace bezsoma::BEZSOMA_ISA

@@ -86,7 +86,6 @@ BEZSOMA_INLINE void scatter_pressure(int m, double *to, const std::int32_t *firs
 /// Elevation in the scaled basis from degree `low` to `high`, in place.
 template <class R> BEZSOMA_INLINE void raise(int low, int high, R *p) {
     for (int j = low; j < high; ++j) {
-        // From the last row to the first: what is read stands before what is written.
         R lower[controls(highest_mixed_degree - 2)];
         each_control_of(j, [&](int at, int, int, int) { lower[at] = p[at]; });
         for (int at = 0, all = (j + 2) * (j + 3) * (j + 4) / 6; at < all; ++at)
@@ -220,20 +219,107 @@ template <int n, int lanes> double mixed_work(const MixedBatches &b) {
     return all;
 }
 
-/// g = M p of a pressure of degree m, weighted by moduli[2 region].
-template <int m, int lanes> void pressure_mass(const MixedBatches &b) {
+/// f = - int p div v: the part of `mixed_apply` that is the pressure's.
+template <int n, int lanes> void mixed_couple(const MixedBatches &b) {
     using R = Lanes<double, lanes>;
+    constexpr int m = n - 1;
+    const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
+    R f[3 * controls(n)], p[controls(m)];
+    for (std::int64_t i = 0; i < b.count; ++i) {
+        const Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
+        gather_pressure<lanes>(low, b.p, b.first_pressure + i * entities_of_pressure * lanes, p);
+        raise(low, m, p);
+        const R scale = root_volume<lanes>(tet) * (-1.0 * n);
+        for (int at = 0; at < controls(m); ++at)
+            p[at] *= scale * (ladder_scales<m>.top[at] * ladder_scales<m>.top[at]);
+        ladder<m, m, double, lanes>(p);
+        for (int row = 0; row < 3 * controls(n); ++row)
+            f[row] = R{};
+        each_control<m>([&](int at, int p1, int p2, int p3) {
+            const R x = p[at] * ladder_scales<m>.top[at];
+#pragma GCC unroll 3
+            for (int k = 0; k < 3; ++k) {
+                const R f1 = x * tet.g[0][k], f2 = x * tet.g[1][k], f3 = x * tet.g[2][k];
+                f[3 * at + k] -= f1 + f2 + f3;
+                f[3 * p1 + k] += f1;
+                f[3 * p2 + k] += f2;
+                f[3 * p3 + k] += f3;
+            }
+        });
+        scatter<n, double, lanes>(b.f, b.first + i * entities(n) * lanes, f);
+    }
+}
+
+// ---------------------------------------------------------------- the pressure alone
+
+/// The diagonal of M, and the levels of the ladder that is M^-1.
+///
+/// On polynomials of degree i that are orthogonal to lower ones M^m is the number
+/// l(m, i) = 3! m!^2 / ((m + i + 3)! (m - i)!) and E_j E_j^T is l(j, i) / l(m, i), or 0 for j < i.
+/// So sum_j b_j E_j E_j^T is the inverse where sum_(j >= i) b_j l(j, i) = 1 for all i.
+template <int m> struct InverseScales {
+    double diagonal[controls(m)] = {};
+    double level[combinations(m + 4, 4)] = {};
+
+    static constexpr double number(int j, int i) {
+        return 6 * factorial(j) * factorial(j) / factorial(j + i + 3) / factorial(j - i);
+    }
+
+    constexpr InverseScales() {
+        double b[m + 1] = {};
+        for (int i = m; i >= 0; --i) {
+            double left = 1;
+            for (int j = i + 1; j <= m; ++j)
+                left -= b[j] * number(j, i);
+            b[i] = left / number(i, i);
+        }
+        int next = 0;
+        for (int j = 0; j <= m; ++j)
+            for (int s3 = 0; s3 <= j; ++s3)
+                for (int s2 = 0; s2 <= s3; ++s2)
+                    for (int s1 = 0; s1 <= s2; ++s1) {
+                        const int alpha[4] = {j - s3, s3 - s2, s2 - s1, s1};
+                        double multinomial = factorial(j);
+                        double own = 1.0 / combinations(2 * m, m) / combinations(2 * m + 3, 3);
+                        for (const int a : alpha) {
+                            multinomial /= factorial(a);
+                            own *= combinations(2 * a, a);
+                        }
+                        level[next++] = b[j] * multinomial * multinomial;
+                        if (j == m)
+                            diagonal[position(s3, s2, s1)] = own;
+                    }
+    }
+};
+
+template <int m> inline constexpr InverseScales<m> inverse_scales{};
+
+enum class OnPressure { mass, inverse, diagonal };
+
+template <int m, int lanes, OnPressure what> void on_pressure(const MixedBatches &b) {
+    using R = Lanes<double, lanes>;
+    constexpr auto &top = ladder_scales<m>.top;
+    constexpr auto &diagonal = inverse_scales<m>.diagonal;
     R p[controls(m)];
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first_pressure + i * entities(m) * lanes;
         const Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
         const R root = root_volume<lanes>(tet), weight = tet.mu * root * root;
-        gather_pressure<lanes>(m, b.p, first, p);
-        for (int at = 0; at < controls(m); ++at)
-            p[at] *= weight * (ladder_scales<m>.top[at] * ladder_scales<m>.top[at]);
-        ladder<m, m, double, lanes>(p);
-        for (int at = 0; at < controls(m); ++at)
-            p[at] *= ladder_scales<m>.top[at] * ladder_scales<m>.top[at];
+        if constexpr (what == OnPressure::diagonal) {
+            for (int at = 0; at < controls(m); ++at)
+                p[at] = weight * (diagonal[at] * top[at]);
+        } else {
+            constexpr bool inverse = what == OnPressure::inverse;
+            gather_pressure<lanes>(m, b.p, first, p);
+            for (int at = 0; at < controls(m); ++at)
+                p[at] *= top[at] * top[at] * (inverse ? diagonal[at] : 1.0);
+            if constexpr (inverse)
+                ladder<m, m, double, lanes, inverse_scales<m>>(p);
+            else
+                ladder<m, m, double, lanes>(p);
+            for (int at = 0; at < controls(m); ++at)
+                p[at] *= weight * (top[at] * top[at] * (inverse ? diagonal[at] : 1.0));
+        }
         scatter_pressure<lanes>(m, b.g, first, p);
     }
 }

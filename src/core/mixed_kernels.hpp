@@ -30,15 +30,24 @@ constexpr int highest_mixed_degree = 8;
 
 struct MixedKernel {
     void (*apply)(const MixedBatches &);
+    void (*couple)(const MixedBatches &); // f = - int p div v, of the pressure alone
     double (*work)(const MixedBatches &); // int 2 G eps' : eps' + p^2 / kappa
-    /// g = M p, weighted with moduli[2 region], by degree of the pressure.
-    void (*mass)(const MixedBatches &);
 };
 
-/// By degree of the displacement - 1 (degree 1 has no stable pressure, and is empty); `mass` by
-/// degree of the pressure - 1.
+/// What is done on the pressure alone, with V weight M of each tet, where the weight is
+/// moduli[2 region]: g = V weight M p; g = V weight d (M^-1 (d p)); g = V weight d, where d is the
+/// diagonal of M.
+struct PressureKernel {
+    void (*mass)(const MixedBatches &);
+    void (*inverse)(const MixedBatches &);
+    void (*diagonal)(const MixedBatches &);
+};
+
+/// By degree of the displacement - 1 (degree 1 has no stable pressure: empty), and by degree of
+/// the pressure - 1.
 struct MixedKernels {
-    MixedKernel degree[highest_mixed_degree];
+    MixedKernel form[highest_mixed_degree];
+    PressureKernel pressure[highest_mixed_degree - 1];
 };
 
 } // namespace bezsoma

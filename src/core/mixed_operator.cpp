@@ -18,8 +18,8 @@ Chunks chunks_of_displacement(const ElasticTets &tets) {
 } // namespace
 
 MixedOperator::MixedOperator(const MixedTets &tets, const Kernels &kernels, Team &team)
-    : kernel_(kernels.mixed->degree[tets.displacement.degree - 1]),
-      mass_(kernels.mixed->degree[tets.pressure_degree - 1].mass), team_(team),
+    : kernel_(kernels.mixed->form[tets.displacement.degree - 1]),
+      pressure_(kernels.mixed->pressure[tets.pressure_degree - 1]), team_(team),
       pressure_degree_(tets.pressure_degree), u_(chunks_of_displacement(tets.displacement), 3),
       p_(bezsoma::chunks(tets.pressure_degree, tets.first_pressure, cuts(u_.chunks())), 1),
       lanes_(u_.chunks(), kernels.lanes64), first_(lanes_.first_controls(u_.chunks())),
@@ -106,19 +106,35 @@ double MixedOperator::work(const double *u, const double *p) {
     return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-void MixedOperator::mass(const std::vector<double> &weight, const double *p, double *g) {
+void MixedOperator::couple(const double *p, double *f) {
+    team_.run(u_.parts(), [&](std::size_t part, std::size_t thread) {
+        double *own_f = scratch(thread), *own_p = own_f + u_.longest();
+        p_.read(part, p, own_p);
+        std::fill(own_f, own_p, 0.0);
+        MixedBatches b = batches(part);
+        b.p = own_p;
+        b.f = own_f;
+        kernel_.couple(b);
+        u_.write(part, own_f, f);
+    });
+    team_.run(u_.parts(), [&](std::size_t part, std::size_t) { u_.add_foreign(part, f); });
+}
+
+void MixedOperator::on_pressure(OnPressure what, const std::vector<double> &weight,
+                                const double *p, double *g) {
     std::vector<double> moduli(2 * weight.size());
     for (std::size_t r = 0; r < weight.size(); ++r)
         moduli[2 * r] = weight[r];
     team_.run(p_.parts(), [&](std::size_t part, std::size_t thread) {
         double *own_p = scratch(thread), *own_g = own_p + p_.longest();
-        p_.read(part, p, own_p);
+        if (p)
+            p_.read(part, p, own_p);
         std::fill_n(own_g, p_.longest(), 0.0);
         MixedBatches b = batches(part);
         b.moduli = moduli.data();
         b.p = own_p;
         b.g = own_g;
-        mass_(b);
+        (pressure_.*what)(b);
         p_.write(part, own_g, g);
     });
     team_.run(p_.parts(), [&](std::size_t part, std::size_t) { p_.add_foreign(part, g); });

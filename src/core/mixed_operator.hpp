@@ -32,11 +32,18 @@ public:
     /// int 2 G eps' : eps' + p^2 / kappa, N mm: twice the stored energy.
     double work(const double *u, const double *p);
 
-    /// g = int weight p q, by regions.
-    void mass(const std::vector<double> &weight, const double *p, double *g);
+    /// f = - int p div v, what `apply` has of the pressure.
+    void couple(const double *p, double *f);
+
+    using OnPressure = void (*PressureKernel::*)(const MixedBatches &);
+    /// g of one of the kernels on the pressure alone, with one weight a region; p may be missing
+    /// where the kernel reads none.
+    void on_pressure(OnPressure what, const std::vector<double> &weight, const double *p,
+                     double *g);
 
     std::int64_t controls() const { return u_.controls(); }
     std::int64_t pressures() const { return p_.controls(); }
+    int pressure_degree() const { return pressure_degree_; }
     std::int64_t regions() const { return static_cast<std::int64_t>(moduli_.size()) / 2; }
     const Chunks &chunks() const { return u_.chunks(); }
     std::size_t bytes() const;
@@ -47,7 +54,7 @@ private:
     double *scratch(std::size_t thread);
 
     const MixedKernel kernel_;
-    void (*const mass_)(const MixedBatches &);
+    const PressureKernel pressure_;
     Team &team_;
     int pressure_degree_;
     ChunkedField<double> u_, p_;
