@@ -32,7 +32,7 @@ from bezsoma.solvers.saddle_direct import direct_saddle
 from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.watch import Watch, in_range
 
-MIXED_SOLVERS = ("auto", "direct", "minres")
+MIXED_SOLVERS = ("auto", "direct", "saddle")
 LOCKED_FROM = 0.45
 """Poisson's ratio from which linear tets miss a quarter of the work of a load."""
 CHEAPER_FROM = {2: 0.45, 3: 0.49, 4: 0.49, 5: 0.499, 6: 0.499, 7: 0.499, 8: 0.499}
@@ -148,7 +148,7 @@ def _iterated(
     u, p, history = saddle(equations.operator, held, f / size, g / size, modes, rtol, report)
     u = u * size + equations.given
     p = without_mean(p * size, modes, equations.pressure_net)
-    return u, p, f"MINRES without a matrix, {why}", history
+    return u, p, f"BiCGStab of both equations without a matrix, {why}", history
 
 
 def _stopped(left: float, rtol: float) -> str:
@@ -192,10 +192,10 @@ def mixed_choice(free: int, solver: str) -> tuple[str, str]:
     if solver not in MIXED_SOLVERS:
         raise InputError(
             f"solver = {solver!r} solves for a displacement alone, and this body has a pressure of "
-            "its own; take 'direct' or 'minres', or 'auto', which chooses between them"
+            "its own; take 'direct' or 'saddle', or 'auto', which chooses between them"
         )
     if solver != "auto":
         return solver, "as asked for"
     if free <= DIRECT_UP_TO:
         return "direct", f"since {free} unknowns are not more than {DIRECT_UP_TO}"
-    return "minres", f"since {free} unknowns are more than {DIRECT_UP_TO}"
+    return "saddle", f"since {free} unknowns are more than {DIRECT_UP_TO}"
