@@ -135,6 +135,7 @@ class Saddle:
         g: Floats,
         u: Floats,
         p: Floats,
+        unit: float,
         volume_weight: float,
         rtol: float,
         most: int,

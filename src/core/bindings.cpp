@@ -451,8 +451,8 @@ public:
                                                                form.team());
     }
 
-    auto solve(In<double, -1, 3> f, In<double, -1> g, Vectors u, Scalars p, double volume_weight,
-               double rtol, int most, const std::function<void(int, double)> &report) {
+    auto solve(In<double, -1, 3> f, In<double, -1> g, Vectors u, Scalars p, double unit,
+               double volume_weight, double rtol, int most, const std::function<void(int, double)> &report) {
         require(form_.fits(f, g) && form_.fits(u, p), "f, u and g, p must have one row a control");
         bezsoma::Convergence found;
         {
@@ -463,7 +463,7 @@ public:
                 form_.team()};
             found = bezsoma::saddle(
                 form_.form(), search, *pressure_,
-                {held_.data(), f.data(), g.data(), volume_weight, rtol, most}, u.data(), p.data(),
+                {held_.data(), f.data(), g.data(), unit, volume_weight, rtol, most}, u.data(), p.data(),
                 form_.team(), [&](int iteration, double residual) {
                     nb::gil_scoped_acquire held;
                     report(iteration, residual);
@@ -535,8 +535,8 @@ NB_MODULE(_core, m) {
                       In<bool, -1, 3>, In<bool, -1, 3>, In<double, -1>, In<double, -1, -1>>(),
              "form"_a, "walk"_a, "corners"_a, "points"_a, "held"_a, "held_vertices"_a, "weight"_a,
              "levels"_a, nb::keep_alive<1, 2>())
-        .def("solve", &Saddle::solve, "f"_a, "g"_a, "u"_a, "p"_a, "volume_weight"_a, "rtol"_a,
-             "most"_a, "report"_a)
+        .def("solve", &Saddle::solve, "f"_a, "g"_a, "u"_a, "p"_a, "unit"_a, "volume_weight"_a,
+             "rtol"_a, "most"_a, "report"_a)
         .def_prop_ro("bytes", &Saddle::bytes);
     m.def("instruction_sets", [] {
         std::vector<std::string> found;

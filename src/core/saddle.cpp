@@ -144,7 +144,7 @@ public:
         const double norm = std::sqrt(square);
         if (norm > 0) {
             displacement_.take(loaded.data(), norm, forces_);
-            displacement_.follow(displacement_scale * norm, 0.0, z.data());
+            displacement_.follow(displacement_scale / problem_.unit * norm, 0.0, z.data());
         }
         each_number(team_, forces_, [&](std::size_t i) {
             if (problem_.fixed[i] || !(norm > 0))

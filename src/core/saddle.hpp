@@ -38,6 +38,7 @@ struct SaddleProblem {
     const std::uint8_t *fixed; // (controls, 3)
     const double *f;           // (controls, 3)
     const double *g;           // (pressures,)
+    double unit;               // N/mm: the displacement's preconditioner is that of A / unit
     double volume_weight;      // N/mm3: makes a change of volume comparable with a force
     double rtol;
     int most;

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from bezsoma import _core
 from bezsoma.arrays import Bools, Floats
@@ -27,17 +28,26 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     Numer. Math. 66, 1994). Everything is float32 on a residual scaled to one, which
     costs no iteration; held (c, 3) says which components are prescribed.
     """
-    net = operator.net
+    corners, places, held_vertices = degree_one(operator.net, held)
+    # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
+    stiff = float(np.abs(operator.lame).max() * np.cbrt(net.mesh.volumes.mean()))
+    walk = operator.walk(stiff)
+    return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
+
+
+def degree_one(net: ControlNet, held: Bools) -> tuple[npt.NDArray[np.int32], Floats, Bools]:
+    """What the problem of degree 1 on the same tets is made from.
+
+    The rows of each tet's vertices (t, 4), tets in the order of the walk; the places of the rows
+    (v, 3) mm; and which of their components are held (v, 3).
+    """
     vertices = net if net.degree == 1 else ControlNet(net.mesh, 1)
     held_vertices = np.empty((vertices.count, 3), dtype=bool)
     held_vertices[vertices.starts[0]] = held[net.starts[0]]
     corners = vertices.starts[0][net.mesh.tets[net.morton]].astype(np.int32)
     places = np.empty((vertices.count, 3))
     places[vertices.starts[0]] = net.mesh.points
-    # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
-    stiff = float(np.abs(operator.lame).max() * np.cbrt(net.mesh.volumes.mean()))
-    walk = operator.walk(stiff)
-    return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
+    return corners, places, held_vertices
 
 
 def multigrid(

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The fast way for the mixed form: BiCGStab without a matrix, block triangular."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bezsoma import _core
+from bezsoma.arrays import Bools, Floats
+from bezsoma.equations.matrix_free import walk
+from bezsoma.equations.mixed_free import MixedFree
+from bezsoma.errors import NotConverged
+from bezsoma.solvers.krylov import Report
+from bezsoma.solvers.multigrid import degree_one
+
+MOST_ITERATIONS = 2500
+
+
+def preconditioner(operator: MixedFree, held: Bools, levels: Floats) -> _core.Saddle:
+    """About the inverse of [A B^T; 0 -S], with A of the displacement and S of the pressure.
+
+    A: the blocks of entities and multigrid of `bezsoma.solvers.multigrid`, for lambda = 0 and
+    mu = G. Not of the deviatoric stress itself, which hardly resists where tets swell or shrink
+    alike: that is the pressure's to forbid. S = int (1/(2G) + 1/kappa) p q, inverted tet by tet
+    with the ladder of the inverse mass matrix, averaged where tets meet, and Chebyshev steps.
+    """
+    G, compressibility = operator.moduli.T
+    corners, places, held_vertices = degree_one(operator.net, held)
+    return _core.Saddle(
+        operator.kernel,
+        walk(operator.net, np.column_stack([0 * G, G]) / _unit(operator)),
+        corners,
+        places,
+        held,
+        held_vertices,
+        1 / (2 * G) + compressibility,
+        _contiguous(levels),
+    )
+
+
+def saddle(
+    operator: MixedFree,
+    held: Bools,
+    f: Floats,
+    g: Floats,
+    levels: Floats,
+    rtol: float,
+    report: Report,
+    most: int = MOST_ITERATIONS,
+) -> tuple[Floats, Floats, list[float]]:
+    """u (c, 3) mm, zero where held, and p (cp,) MPa with `operator` (u, p) = (f, g) where free.
+
+    `levels` (j, cp) are pressures that no displacement feels (the constants of a part whose whole
+    boundary is held, at nu = 1/2): they are taken out of g, and of p so that int level p = 0.
+
+    Forces [N] and changes of volume [mm3] are compared by w = 2 G / h, N/mm3, with the largest G
+    and the mean width h of a tet: converged means |r_u| <= rtol r and w |r_p| <= rtol r with
+    r^2 = |f|^2 + w^2 |g|^2, on the residual formed anew at the end. The history has the larger of
+    both relative to r, one a step; a step applies the form twice. Same bits for any number of
+    threads.
+    """
+    G, unit = float(operator.moduli[:, 0].max()), _unit(operator)
+    levels = _orthogonal(levels)
+    solver = preconditioner(operator, held, levels)
+    u, p = np.zeros_like(f), np.zeros_like(g)
+    history, residual, converged, broken, rounded = solver.solve(
+        np.where(held, 0.0, f), _contiguous(g), u, p, unit, 2 * G**2 / unit, rtol, most, report
+    )
+    history[-1] = residual
+    if converged:
+        return u, _without(operator, levels, p), history
+    how = "stand still, since rounding lets them come no further," if rounded else "are not done"
+    if broken:
+        how = "broke down"
+    raise NotConverged(
+        f"the iterations for displacement and pressure {how} after {len(history) - 1} steps, at "
+        f"{residual:.3g} of the residual at the start; rtol = {rtol:g} was asked for. Tets with "
+        "all four vertices held lock and slow them down, and so do very flat tets: look at the "
+        "mesh (bezsoma mesh info), take a larger rtol, a lower degree, or solver='direct' on a "
+        "small problem",
+        history,
+    )
+
+
+def _unit(operator: MixedFree) -> float:
+    """G h, N/mm: by which the displacement's preconditioner is scaled to order one, for float32."""
+    h = float(np.cbrt(operator.net.mesh.volumes.mean()))
+    return float(operator.moduli[:, 0].max()) * h
+
+
+def _contiguous(x: Floats) -> Floats:
+    return np.ascontiguousarray(x, dtype=np.float64)
+
+
+def _orthogonal(levels: Floats) -> Floats:
+    """The same span by rows that are orthogonal; not by a BLAS, see `krylov.dot`."""
+    rows: list[Floats] = []
+    for level in levels:
+        for row in rows:
+            level = level - float(np.einsum("i,i", row, level)) * row
+        rows.append(level / np.sqrt(float(np.einsum("i,i", level, level))))
+    return np.array(rows).reshape(levels.shape)
+
+
+def _without(operator: MixedFree, levels: Floats, p: Floats) -> Floats:
+    """p minus what levels there are in it: int level p = 0 for all of them."""
+    if len(levels) == 0:
+        return p
+    weighted = np.array([operator.mass(np.ones(len(operator.moduli)), level) for level in levels])
+    gram, right = np.einsum("ip,jp->ij", weighted, levels), np.einsum("ip,p->i", weighted, p)
+    part = np.linalg.solve(gram, right)
+    return p - np.einsum("j,jp->p", part, levels)
