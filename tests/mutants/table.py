@@ -328,6 +328,13 @@ PYTHON = (
         "keys = mesh.tets * len(mesh.regions)",
         ("tests/laws/test_mixed.py", "tests/cases/test_incompressible.py"),
     ),
+    Mutant(
+        "fluxes scaled for their size and not scaled back",
+        f"{EQUATIONS}/level.py",
+        "_plain(modes / size[:, None])",
+        "_plain(modes)",
+        MIXED,
+    ),
 )
 
 CPP = (
