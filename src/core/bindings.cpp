@@ -447,24 +447,25 @@ public:
         aggregation_ = std::make_unique<bezsoma::Aggregation>(
             bezsoma::vertex_matrix(tets, corners.data(), vertices, at_vertices.data(), form.team()),
             points.data(), at_vertices.data(), form.team());
-        pressure_ = std::make_unique<bezsoma::PressureInverse>(form.form(), weights, out,
-                                                               form.team());
+        pressure_ =
+            std::make_unique<bezsoma::PressureInverse>(form.form(), weights, out, form.team());
     }
 
     auto solve(In<double, -1, 3> f, In<double, -1> g, Vectors u, Scalars p, double unit,
-               double volume_weight, double rtol, int most, const std::function<void(int, double)> &report) {
+               double volume_weight, double rtol, int most,
+               const std::function<void(int, double)> &report) {
         require(form_.fits(f, g) && form_.fits(u, p), "f, u and g, p must have one row a control");
         bezsoma::Convergence found;
         {
             nb::gil_scoped_release released;
             const std::lock_guard turn(form_.turn());
-            bezsoma::Search search{
-                blocks_.get(), [&](const float *r, float *z) { aggregation_->apply(r, z); },
-                form_.team()};
+            bezsoma::Search search{blocks_.get(),
+                                   [&](const float *r, float *z) { aggregation_->apply(r, z); },
+                                   form_.team()};
             found = bezsoma::saddle(
                 form_.form(), search, *pressure_,
-                {held_.data(), f.data(), g.data(), unit, volume_weight, rtol, most}, u.data(), p.data(),
-                form_.team(), [&](int iteration, double residual) {
+                {held_.data(), f.data(), g.data(), unit, volume_weight, rtol, most}, u.data(),
+                p.data(), form_.team(), [&](int iteration, double residual) {
                     nb::gil_scoped_acquire held;
                     report(iteration, residual);
                 });

@@ -57,8 +57,8 @@ public:
         const auto wide = std::int64_t{components_};
         for (const Addition &added : chunks_.parts[part].added)
             for (std::int64_t i = 0; i < wide * added.run.length; ++i)
-                to[wide * added.run.control + i] += foreign_[static_cast<std::size_t>(
-                    wide * added.from + i)];
+                to[wide * added.run.control + i] +=
+                    foreign_[static_cast<std::size_t>(wide * added.from + i)];
     }
 
 private:

@@ -33,7 +33,8 @@ void Search::follow(double norm, double beta, double *p) {
     if (blocks_)
         blocks_->back(z_, norm, beta, p);
     else
-        each_number(team_, z_.size(), [&](std::size_t i) { p[i] = beta * p[i] + norm * double{z_[i]}; });
+        each_number(team_, z_.size(),
+                    [&](std::size_t i) { p[i] = beta * p[i] + norm * double{z_[i]}; });
 }
 
 Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner *blocks,

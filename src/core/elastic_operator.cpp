@@ -48,7 +48,8 @@ TetShape ElasticTets::shape(std::int64_t i) const {
 
 template <class T>
 ElasticOperator<T>::ElasticOperator(const ElasticTets &tets, const Kernels &kernels, Team &team)
-    : team_(team), chunks_(bezsoma::chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets))),
+    : team_(team),
+      chunks_(bezsoma::chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets))),
       lame_(tets.lame, tets.lame + 2 * tets.regions), scratch_(team.size()) {
     if constexpr (sizeof(T) == 8) {
         kernel_ = kernels.f64[tets.degree - 1];

@@ -34,11 +34,14 @@ struct PressurePlan {
 };
 
 #define BEZSOMA_PLAN(m)                                                                            \
-    {pressure_order<m>.row, pressure_order<m>.multinomial,                                         \
-     {inside(m, 0), inside(m, 1), inside(m, 2), inside(m, 3)}}
-inline constexpr PressurePlan pressure_plans[] = {
-    BEZSOMA_PLAN(1), BEZSOMA_PLAN(2), BEZSOMA_PLAN(3), BEZSOMA_PLAN(4),
-    BEZSOMA_PLAN(5), BEZSOMA_PLAN(6), BEZSOMA_PLAN(7)};
+    {                                                                                              \
+        pressure_order<m>.row, pressure_order<m>.multinomial, {                                    \
+            inside(m, 0), inside(m, 1), inside(m, 2), inside(m, 3)                                 \
+        }                                                                                          \
+    }
+inline constexpr PressurePlan pressure_plans[] = {BEZSOMA_PLAN(1), BEZSOMA_PLAN(2), BEZSOMA_PLAN(3),
+                                                  BEZSOMA_PLAN(4), BEZSOMA_PLAN(5), BEZSOMA_PLAN(6),
+                                                  BEZSOMA_PLAN(7)};
 
 /// Calls f(p, p1, p2, p3) for every control of degree m as `each_control` does.
 template <class F> BEZSOMA_INLINE void each_control_of(int m, F &&f) {
@@ -102,9 +105,8 @@ template <class R> BEZSOMA_INLINE void raise(int low, int high, R *p) {
 /// Its transpose, from degree `high` to `low`: rows are read at and after the one written.
 template <class R> BEZSOMA_INLINE void lower(int high, int low, R *g) {
     for (int j = high - 1; j >= low; --j)
-        each_control_of(j, [&](int at, int p1, int p2, int p3) {
-            g[at] = (g[at] + g[p1]) + (g[p2] + g[p3]);
-        });
+        each_control_of(
+            j, [&](int at, int p1, int p2, int p3) { g[at] = (g[at] + g[p1]) + (g[p2] + g[p3]); });
 }
 
 /// sqrt(V) of every lane's tet: |det of the three sqrt(V) grad L_i| is sqrt(V) / 6.
@@ -207,9 +209,10 @@ template <int n, int lanes> double mixed_work(const MixedBatches &b) {
             R h[3][3];
             gradient<double, lanes>(tet, u, at, p1, p2, p3, h);
             const double top = ladder_scales<m>.top[at];
-            sum += top * (h[0][0] * stress[0][at] + h[1][1] * stress[1][at] +
-                          h[2][2] * stress[2][at] + (h[0][1] + h[1][0]) * stress[3][at] +
-                          (h[1][2] + h[2][1]) * stress[4][at] + (h[2][0] + h[0][2]) * stress[5][at]);
+            sum +=
+                top * (h[0][0] * stress[0][at] + h[1][1] * stress[1][at] + h[2][2] * stress[2][at] +
+                       (h[0][1] + h[1][0]) * stress[3][at] + (h[1][2] + h[2][1]) * stress[4][at] +
+                       (h[2][0] + h[0][2]) * stress[5][at]);
             sum += compressibility * p[at] * trace[at];
         });
     }

@@ -37,14 +37,15 @@ void MixedOperator::pack(const ElasticTets &tets) {
     region_.resize(size(lanes_.batches() * lanes));
     geometry_.resize(size(lanes_.batches() * 9 * lanes));
     team_.run(u_.parts(), [&](std::size_t part, std::size_t) {
-        lanes_.each(u_.chunks(), part, [&](std::int64_t tet, std::int64_t batch, std::int64_t lane) {
-            const TetShape shape = tets.shape(tet);
-            const double root = std::sqrt(shape.volume);
-            for (std::int64_t k = 0; k < 9; ++k)
-                geometry_[size((batch * 9 + k) * lanes + lane)] =
-                    root * shape.gradients[1 + k / 3][k % 3];
-            region_[size(batch * lanes + lane)] = tets.region(tet);
-        });
+        lanes_.each(u_.chunks(), part,
+                    [&](std::int64_t tet, std::int64_t batch, std::int64_t lane) {
+                        const TetShape shape = tets.shape(tet);
+                        const double root = std::sqrt(shape.volume);
+                        for (std::int64_t k = 0; k < 9; ++k)
+                            geometry_[size((batch * 9 + k) * lanes + lane)] =
+                                root * shape.gradients[1 + k / 3][k % 3];
+                        region_[size(batch * lanes + lane)] = tets.region(tet);
+                    });
     });
 }
 
@@ -120,8 +121,8 @@ void MixedOperator::couple(const double *p, double *f) {
     team_.run(u_.parts(), [&](std::size_t part, std::size_t) { u_.add_foreign(part, f); });
 }
 
-void MixedOperator::on_pressure(OnPressure what, const std::vector<double> &weight,
-                                const double *p, double *g) {
+void MixedOperator::on_pressure(OnPressure what, const std::vector<double> &weight, const double *p,
+                                double *g) {
     std::vector<double> moduli(2 * weight.size());
     for (std::size_t r = 0; r < weight.size(); ++r)
         moduli[2 * r] = weight[r];

@@ -26,8 +26,7 @@ template <class Work> void each_number(Team &team, std::size_t length, const Wor
 class Pieces {
 public:
     Pieces(std::size_t length, Team &team)
-        : length_(length), team_(team),
-          sums_((length + numbers_of_piece - 1) / numbers_of_piece) {}
+        : length_(length), team_(team), sums_((length + numbers_of_piece - 1) / numbers_of_piece) {}
 
     /// The sum over all i of term(i), which may also write at i.
     template <class Term> double sum(const Term &term) {
