@@ -30,7 +30,7 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     """
     corners, places, held_vertices = degree_one(operator.net, held)
     # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
-    stiff = float(np.abs(operator.lame).max() * np.cbrt(net.mesh.volumes.mean()))
+    stiff = float(np.abs(operator.lame).max() * np.cbrt(operator.net.mesh.volumes.mean()))
     walk = operator.walk(stiff)
     return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
 
