@@ -203,7 +203,7 @@ class Problem:
             self.operator, self.held, self.f, given, self.levels, rtol, lambda *_: None
         )
         assert history[0] <= 1 and history[-1] <= rtol * (1 + 1e-6)
-        f, found = self.operator.apply(u, p)
+        f, _ = self.operator.apply(u, p)
         left = np.where(self.held, 0.0, self.f - f)
         assert np.linalg.norm(left) <= rtol * 1.001 * np.hypot(
             np.linalg.norm(self.f), self.weight * np.linalg.norm(given)

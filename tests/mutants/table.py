@@ -33,6 +33,7 @@ ELEMENT = ("tests/laws/test_element.py", "tests/paper/test_equations.py")
 ASSEMBLED = ("tests/laws/test_assembled.py", "tests/paper/test_equations.py")
 CHOLESKY = ("tests/laws/test_cholesky.py",)
 MATRIX_FREE = ("tests/laws/test_matrix_free.py",)
+MIXED_FREE = ("tests/laws/test_mixed_free.py",)
 MULTIGRID = ("tests/laws/test_multigrid.py",)
 HARD = ("tests/faults/test_hard_problems.py",)
 LOADS = ("tests/laws/test_loads.py", "tests/paper/test_equations.py")
@@ -338,6 +339,34 @@ PYTHON = (
 )
 
 CPP = (
+    Mutant(
+        "the mean strain taken out of the deviator twice as often as it should",
+        f"{CORE}/mixed_kernel.hpp",
+        "swelling * (2.0 / 3.0)",
+        "swelling * (4.0 / 3.0)",
+        MIXED_FREE,
+    ),
+    Mutant(
+        "a pressure that is not brought back to its own degree",
+        f"{CORE}/mixed_kernel.hpp",
+        "lower(m, low, trace);",
+        "",
+        MIXED_FREE,
+    ),
+    Mutant(
+        "the inverse ladder without one of its levels",
+        f"{CORE}/mixed_kernel.hpp",
+        "left -= b[j] * number(j, i);",
+        "left -= b[j] * number(j, j);",
+        MIXED_FREE,
+    ),
+    Mutant(
+        "the pressure's load forgotten in the triangular preconditioner",
+        f"{CORE}/saddle.cpp",
+        "problem_.fixed[i] ? 0.0 : a[i] - loaded[i];",
+        "problem_.fixed[i] ? 0.0 : a[i];",
+        MIXED_FREE,
+    ),
     Mutant(
         "lambda and mu exchanged between the two transposed products",
         f"{CORE}/elasticity.cpp",
