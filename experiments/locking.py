@@ -104,7 +104,7 @@ def picture(found: list[Row], path: Path) -> None:
                 mfc="none" if form == "mixed" else None,
             )
     left.set(
-        xlabel="1 - 2 nu (leftmost: nu = 1/2)",
+        xlabel="1 - 2 nu (the last: nu = 1/2)",
         ylabel="missing work of the load, relative",
         title=f"{6 * CELLS**3} tets: who locks",
     )

@@ -16,10 +16,10 @@ constexpr int most_beginnings = 20;
 // Where the inverses of tets, averaged, have their largest eigenvalue times the mass matrix; the
 // least is one. By degree of the pressure - 1, measured on irregular meshes and rounded up.
 constexpr double largest[] = {2.0, 5.0, 8.0, 9.5, 10.5, 11.5, 12.5};
-constexpr int chebyshev_steps[] = {1, 2, 2, 2, 2, 2, 2};
+constexpr int chebyshev_steps[] = {1, 1, 2, 2, 2, 2, 2};
 // The additive preconditioner counts what entities of four dimensions and degree 1 share up to
-// about 3.7 times. Twice that and the pressure's part balance: fewest iterations.
-constexpr double displacement_scale = 2.0;
+// about 3.7 times. Two or three times that, and it balances the pressure's part: fewest steps.
+double displacement_scale(int pressure_degree) { return pressure_degree < 3 ? 2.0 : 3.0; }
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
@@ -28,8 +28,8 @@ std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 PressureInverse::PressureInverse(MixedOperator &form, std::vector<double> weight,
                                  std::vector<double> levels, Team &team)
     : form_(form), weight_(std::move(weight)), levels_(std::move(levels)),
-      inverse_(size(form.pressures())), x_(inverse_.size()), y_(inverse_.size()),
-      step_(inverse_.size()), team_(team) {
+      inverse_(size(form.pressures())), divided_(inverse_.size()), x_(inverse_.size()),
+      y_(inverse_.size()), step_(inverse_.size()), team_(team) {
     form_.on_pressure(&PressureKernel::diagonal, weight_, nullptr, inverse_.data());
     for (double &d : inverse_)
         d = 1 / d;
@@ -38,8 +38,8 @@ PressureInverse::PressureInverse(MixedOperator &form, std::vector<double> weight
 /// z = sum over tets of W M_T^-1 W r, where W shares a control between its tets: weights as the
 /// diagonal of the mass matrix has them.
 void PressureInverse::shared(const double *r, double *z) {
-    each_number(team_, x_.size(), [&](std::size_t i) { x_[i] = inverse_[i] * r[i]; });
-    form_.on_pressure(&PressureKernel::inverse, weight_, x_.data(), z);
+    each_number(team_, x_.size(), [&](std::size_t i) { divided_[i] = inverse_[i] * r[i]; });
+    form_.on_pressure(&PressureKernel::inverse, weight_, divided_.data(), z);
     each_number(team_, x_.size(), [&](std::size_t i) { z[i] *= inverse_[i]; });
 }
 
@@ -144,7 +144,8 @@ public:
         const double norm = std::sqrt(square);
         if (norm > 0) {
             displacement_.take(loaded.data(), norm, forces_);
-            displacement_.follow(displacement_scale / problem_.unit * norm, 0.0, z.data());
+            const double scale = displacement_scale(form_.pressure_degree()) / problem_.unit;
+            displacement_.follow(scale * norm, 0.0, z.data());
         }
         each_number(team_, forces_, [&](std::size_t i) {
             if (problem_.fixed[i] || !(norm > 0))

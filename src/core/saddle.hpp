@@ -29,7 +29,7 @@ private:
     MixedOperator &form_;
     std::vector<double> weight_, levels_;
     std::vector<double> inverse_; // of the diagonal of the mass matrix
-    std::vector<double> x_, y_, step_;
+    std::vector<double> divided_, x_, y_, step_;
     Team &team_;
 };
 

@@ -169,7 +169,7 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
     ),
     "unknown method": (
         ("[output]", '[solver]\nmethod = "lu"\n[output]'),
-        ["solver.method: 'lu'", "'auto', 'direct', 'multigrid', 'cg' or 'minres'"],
+        ["solver.method: 'lu'", "'auto', 'direct', 'multigrid', 'cg' or 'saddle'"],
     ),
     "a tolerance of zero": (
         ("[output]", "[solver]\nrtol = 0\n[output]"),

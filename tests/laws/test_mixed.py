@@ -23,12 +23,12 @@ SIDES = ("left", "right", "front", "back", "bottom", "top")
 
 
 def layers(cells: int = 2, irregular: float = 0.2) -> TetMesh:
-    """A block of two regions, "low" and "high", the plane between them straight."""
-    plain = block((1.0, 0.9, 1.1), cells=(cells, cells, 2), irregular=irregular, seed=3)
+    """A block of two regions, "low" and the thicker "high", the plane between them straight."""
+    plain = block((1.0, 0.9, 1.2), cells=(cells, cells, 3), irregular=irregular, seed=3)
     points = plain.points.copy()
-    middle = block((1.0, 0.9, 1.1), cells=(cells, cells, 2)).points[:, 2] == 0.55
-    points[middle, 2] = 0.55
-    region = (points[plain.tets].mean(axis=1)[:, 2] > 0.55).astype(int)
+    middle = np.isclose(block((1.0, 0.9, 1.2), cells=(cells, cells, 3)).points[:, 2], 0.4)
+    points[middle, 2] = 0.4
+    region = (points[plain.tets].mean(axis=1)[:, 2] > 0.4).astype(int)
     mesh = TetMesh(points, plain.tets, region, ("low", "high"), plain.surfaces)
     seam = mesh.all_faces[middle[mesh.all_faces].all(axis=1)]
     return mesh.with_surface("seam", seam)

@@ -280,7 +280,7 @@ class PointForce(Table):
 class Solver(Table):
     """How to solve."""
 
-    method: Literal["auto", "direct", "multigrid", "cg", "minres"] = "auto"
+    method: Literal["auto", "direct", "multigrid", "cg", "saddle"] = "auto"
     rtol: Annotated[float, Field(gt=0, lt=1)] = 1e-8
     threads: Annotated[int, Field(ge=0, le=1024, description="0: all cores")] | None = None
 

@@ -64,7 +64,7 @@ def undetermined(net: ControlNet, pressure_net: ControlNet, held: Bools, soft: B
     out = parts.flux[np.flatnonzero(~held.ravel())] / size
     out.data[np.abs(out.data) < NOTHING / net.count] = 0.0
     modes = null_space((out.T @ out).toarray(), rcond=SINGULAR) if out.nnz else np.eye(len(size))
-    return np.asarray((parts.controls @ _plain(modes)).T)
+    return np.asarray((parts.controls @ _plain(modes / size[:, None])).T)
 
 
 def refuse_flux(

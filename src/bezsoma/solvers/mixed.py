@@ -21,6 +21,7 @@ from bezsoma.equations.rigid import refuse_rigid_motions
 from bezsoma.equations.stress import volume_change
 from bezsoma.errors import InputError, NotConverged
 from bezsoma.mechanics.body import Body
+from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
@@ -31,8 +32,12 @@ from bezsoma.solvers.saddle_direct import direct_saddle
 from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.watch import Watch, in_range
 
-MIXED_SOLVERS = ("auto", "direct", "minres")
-DIRECT_UP_TO = 6000
+MIXED_SOLVERS = ("auto", "direct", "saddle")
+LOCKED_FROM = 0.45
+"""Poisson's ratio from which linear tets miss a tenth of the work of a load and more."""
+CHEAPER_FROM = {2: 0.45, 3: 0.49, 4: 0.499, 5: 0.499, 6: 0.499}
+"""Poisson's ratio, of those measured, from which the mixed form is the cheaper one, by degree."""
+DIRECT_UP_TO = 3000
 """Unknowns up to which the direct solver is chosen for the mixed form."""
 
 
@@ -143,7 +148,7 @@ def _iterated(
     u, p, history = saddle(equations.operator, held, f / size, g / size, modes, rtol, report)
     u = u * size + equations.given
     p = without_mean(p * size, modes, equations.pressure_net)
-    return u, p, f"MINRES without a matrix, {why}", history
+    return u, p, f"BiCGStab of both equations without a matrix, {why}", history
 
 
 def _stopped(left: float, rtol: float) -> str:
@@ -161,15 +166,36 @@ def _pressure(body: Body, net: ControlNet, p: Floats) -> Field | BrokenField:
     return BrokenField(body.mesh, net.degree, frozen(p[net.of_tet]))
 
 
+def advice(body: Body) -> str:
+    """What to do better with a displacement form close to nu = 1/2; nothing where it is as good.
+
+    The numbers are those of experiments/locking.py: from there on the mixed form of the same degree
+    takes less time for the same error.
+    """
+    nus = [law.nu for law in body.material_of_region if isinstance(law, LinearElastic)]
+    worst = max(nus, default=0.0)
+    if body.degree == 1 and worst >= LOCKED_FROM:
+        return (
+            f"nu = {worst:g} at degree 1: linear tets lock, and the answer is much too stiff; take "
+            "degree 2 or more, best with a pressure of its own, Body(..., incompressible=True)"
+        )
+    if body.degree in CHEAPER_FROM and worst >= CHEAPER_FROM[body.degree]:
+        return (
+            f"nu = {worst:g} at degree {body.degree}: from nu = {CHEAPER_FROM[body.degree]:g} on "
+            "the mixed form takes less time for the same error; Body(..., incompressible=True)"
+        )
+    return ""
+
+
 def mixed_choice(free: int, solver: str) -> tuple[str, str]:
     """The solver for so many unknowns, and why."""
     if solver not in MIXED_SOLVERS:
         raise InputError(
             f"solver = {solver!r} solves for a displacement alone, and this body has a pressure of "
-            "its own; take 'direct' or 'minres', or 'auto', which chooses between them"
+            "its own; take 'direct' or 'saddle', or 'auto', which chooses between them"
         )
     if solver != "auto":
         return solver, "as asked for"
     if free <= DIRECT_UP_TO:
         return "direct", f"since {free} unknowns are not more than {DIRECT_UP_TO}"
-    return "minres", f"since {free} unknowns are more than {DIRECT_UP_TO}"
+    return "saddle", f"since {free} unknowns are more than {DIRECT_UP_TO}"

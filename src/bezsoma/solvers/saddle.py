@@ -109,4 +109,5 @@ def _without(operator: MixedFree, levels: Floats, p: Floats) -> Floats:
     weighted = np.array([operator.mass(np.ones(len(operator.moduli)), level) for level in levels])
     gram, right = np.einsum("ip,jp->ij", weighted, levels), np.einsum("ip,p->i", weighted, p)
     part = np.linalg.solve(gram, right)
-    return p - np.einsum("j,jp->p", part, levels)
+    taken: Floats = np.einsum("j,jp->p", part, levels)
+    return p - taken

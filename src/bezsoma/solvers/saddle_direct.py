@@ -93,7 +93,7 @@ def _factored(matrix: MixedMatrix, parts: _Scaled) -> Callable[[Floats], Floats]
     if matrix.shear.blocks.size + 2 * matrix.coupling.nnz > LARGEST:
         raise InputError(
             f"the matrix has more entries than the direct solver can count ({LARGEST}); use "
-            "solver='minres'"
+            "solver='saddle'"
         )
     su, sp = diags_array(parts.scale_u), diags_array(parts.scale_p)
     K = su @ matrix.shear.scipy().tocsr()[parts.free][:, parts.free] @ su
@@ -105,7 +105,7 @@ def _factored(matrix: MixedMatrix, parts: _Scaled) -> Callable[[Floats], Floats]
     except MemoryError as full:
         raise InputError(
             f"the factors of {whole.shape[0]} unknowns are more than the direct solver can hold or "
-            "count; use solver='minres'"
+            "count; use solver='saddle'"
         ) from full
     except RuntimeError as singular:
         raise NotConverged(

@@ -24,13 +24,13 @@ from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import direct
 from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_cholesky
 from bezsoma.solvers.memory import refuse_what_does_not_fit
-from bezsoma.solvers.mixed import mixed_solution
+from bezsoma.solvers.mixed import advice, mixed_solution
 from bezsoma.solvers.multigrid import multigrid
 from bezsoma.solvers.solution import Solution, reactions
 from bezsoma.solvers.watch import Progress, Watch, in_range
 
 MOST_THREADS = 1024
-SOLVERS = ("auto", "direct", "multigrid", "cg", "minres")
+SOLVERS = ("auto", "direct", "multigrid", "cg", "saddle")
 DIRECT_UP_TO = 3000
 """Unknowns up to which the direct solver is chosen: above, multigrid is ahead at every degree."""
 
@@ -69,7 +69,7 @@ def solve(
         solver: "direct" (a sparse factorisation, to rounding), "multigrid" (conjugate gradients
             without a matrix, preconditioned by blocks of entities and multigrid), "cg" (the
             paper's: with an incomplete Cholesky factorisation), or "auto": direct up to
-            `DIRECT_UP_TO` unknowns, multigrid above. With a pressure: "direct", "minres" (without
+            `DIRECT_UP_TO` unknowns, multigrid above. With a pressure: "direct", "saddle" (without
             a matrix, preconditioned), or "auto".
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to, relative to that at zero free displacement.
@@ -106,9 +106,9 @@ def _check(body: Body, solver: str, rtol: float) -> None:
         raise InputError(f"solve() was given {body!r}; it solves a Body")
     if solver not in SOLVERS:
         raise InputError(unknown("solver", solver, SOLVERS, "solve()"))
-    if solver == "minres" and not body.mixed:
+    if solver == "saddle" and not body.mixed:
         raise InputError(
-            "solver = 'minres' is for bodies with a pressure of their own, and this one has none: "
+            "solver = 'saddle' is for bodies with a pressure of their own, and this one has none: "
             "give Body(..., incompressible=True), or take 'multigrid'"
         )
     if not (isinstance(rtol, int | float) and 0 < rtol < 1):
@@ -235,4 +235,5 @@ def _solution(
         found.history[-1] if found.history else 0.0,
         equations.free,
         watch.timings,
+        advice=advice(body),
     )
