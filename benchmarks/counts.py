@@ -33,13 +33,14 @@ def of_tet(degree: int) -> Counts:
         differences  9 subtractions
         gradient     9 sums of three products:             27 mul 18 add, 27 with pairs
         stress       trace, scales, 6 components:          12 mul  8 add, 14 with pairs
-        forces       3 x (3 mul, 3 sums of three products, 2 + 4 additions):
-                                                           36 mul 36 add, 54 with pairs
+        forces       6 scales, 3 x 4 sums of three products, 3 x 3 of them onto a sum:
+                                                           42 mul 33 add, 42 with pairs
 
     and the ladder from level m = n - 1 down, for each of six components: 3 + 4 additions for each
-    control of the level below and one product for each of this level; last 3 sums for each control.
+    control of the level below and one product for each of this level, which an addition pairs with
+    above level 0; last 3 sums for each control.
 
-    >>> of_tet(1).flops == 9 + 45 + 20 + 6 + 72 + 12
+    >>> of_tet(1).flops == 9 + 45 + 20 + 6 + 75 + 12
     True
     """
     points = controls(degree - 1)
@@ -47,8 +48,8 @@ def of_tet(degree: int) -> Counts:
     levels = sum(controls(level) for level in range(degree))
     ladder = 6 * (7 * below + levels)
     scatter = 3 * controls(degree)
-    flops = points * (9 + 45 + 20 + 72) + ladder + scatter
-    instructions = points * (9 + 27 + 14 + 54) + ladder + scatter
+    flops = points * (9 + 45 + 20 + 75) + ladder + scatter
+    instructions = points * (9 + 27 + 14 + 42) + 6 * (7 * below + 1) + scatter
     return Counts(flops, instructions)
 
 

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import isolated
+import plots
 import problem
 import record
 from engines import NAMES
@@ -43,13 +44,14 @@ def main() -> None:
                 ways = {engine: configurations(engine, degree, unknowns) for engine in engines}
                 for threads in options.threads:
                     case = {"degree": degree, "threads": threads, "tets": str(tets)}
-                    row = compared(case, ways, options)
+                    row = compared(case, ways, options) | {"size": unknowns}
                     ways = {engine: promising(runs) for engine, runs in row["tried"].items()}
                     found["rows"].append(row)
                     print("\n".join(lines(row)), flush=True)
                     record.kept(options.name, found)
                 tets.unlink()
     record.stored(options.name, found, report(found))
+    plots.peers(ratios(found["rows"]), options.plot)
 
 
 def configurations(engine: str, degree: int, unknowns: int) -> list[str]:
@@ -159,6 +161,12 @@ def best_peer(row: Run) -> Run | None:
     return min(others, key=lambda run: run["together"], default=None)
 
 
+def ratios(rows: list[Run]) -> list[Run]:
+    """What the picture shows: how many times longer the best peer took, where there is one."""
+    beside = ((row, best_peer(row)) for row in rows if row["kept"].get("bezsoma"))
+    return [row | {"ratio": peer["slower"]} for row, peer in beside if peer]
+
+
 def report(found: Run) -> str:
     """Markdown: the summary by degree, then all that was kept, then what was tried."""
     about = found["surroundings"]
@@ -213,6 +221,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--limit", type=float, default=900, help="seconds for one run")
     parser.add_argument("--long", type=float, default=10, help="longer runs are not repeated, s")
     parser.add_argument("--name", default="peers", help="of the files in benchmarks/results")
+    parser.add_argument("--plot", default="", help="where to draw")
     return parser.parse_args()
 
 

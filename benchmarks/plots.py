@@ -34,7 +34,7 @@ def operator(found: Run, path: str) -> None:
                 label=f"{name}, float{8 * width}",
             )
     left.set(xlabel="degree", ylabel="million unknowns a second, one right-hand side", ylim=0)
-    left.legend(frameon=False)
+    left.legend(frameon=False, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1), fontsize=8)
     rows = [r for r in one if r["instructions"] == names[0] and r["width"] == 8]
     for part, label, colour in (
         ("part", "of the roof", "#000000"),
@@ -52,7 +52,7 @@ def operator(found: Run, path: str) -> None:
         )
     right.axhline(50, color="#999999", lw=0.8, ls=":")
     right.set(xlabel="degree", ylabel=f"attained, %; {names[0]}, float64", ylim=(0, 100))
-    right.legend(frameon=False)
+    right.legend(frameon=False, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), fontsize=8)
     _finished(figure, path)
 
 
@@ -124,8 +124,9 @@ def peers(rows: list[Run], path: str) -> None:
     ax.set(yscale="log", xlabel="degree", ylabel="time of the best peer over ours")
     ticks = [1, 3, 10, 30, 100]
     ax.set_yticks(ticks, [str(tick) for tick in ticks])
+    ax.set_xticks(sorted({row["degree"] for row in rows}))
     ax.axhline(1, color="#999999", lw=0.8)
-    ax.legend(frameon=False)
+    ax.legend(frameon=False, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1), fontsize=8)
     _finished(figure, path)
 
 

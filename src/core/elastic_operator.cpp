@@ -136,9 +136,12 @@ template <class T> T *copied(const T *x, std::int64_t from, T *y, std::int64_t t
         for (std::int64_t i = 0; i < n * to; ++i)
             y[i] = x[i];
     } else {
-        for (std::int64_t i = 0; i < n; ++i)
+        for (std::int64_t i = 0; i < n; ++i) {
             for (std::int64_t k = 0; k < both; ++k)
                 y[i * to + k] = x[i * from + k];
+            for (std::int64_t k = both; k < to; ++k)
+                y[i * to + k] = T{};
+        }
     }
     return y + n * to;
 }

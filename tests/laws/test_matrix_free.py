@@ -228,6 +228,18 @@ def test_applied_again_it_gives_the_same_bits() -> None:
     assert (operator.single(u.astype(np.float32)) == single).all()
 
 
+def test_what_forces_held_before_does_not_matter() -> None:
+    """Forces are cleared piece by piece, where a batch first meets them: none is forgotten."""
+    for degree in (1, 2, 3, 4, 6):
+        net = ControlNet(materials(block(cells=(5, 4, 4), irregular=0.3)), degree)
+        operator = MatrixFree(net, LAME, 2)
+        for sides in (1, 3, 8):
+            u = vectors(net, sides)
+            f = np.full_like(u, np.nan)
+            operator.kernel.apply(u, f)
+            assert np.isfinite(f).all()
+
+
 def test_a_body_of_materials_is_the_sum_of_its_regions() -> None:
     net = ControlNet(materials(block(cells=3, irregular=0.3)), 3)
     u = vectors(net)[..., 0]
