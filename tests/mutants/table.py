@@ -630,8 +630,8 @@ CPP = (
     Mutant(
         "chunks that depend on the number of threads",
         f"{CORE}/elastic_operator.cpp",
-        "std::clamp(expected_controls(tets) / shares,",
-        "std::clamp(most_controls / std::int64_t(team.size()),",
+        "tets.tets, controls_of_chunk(tets))",
+        "tets.tets, most_controls / std::int64_t(team.size()))",
         ("tests/laws/test_threads.py::test_a_whole_solve_has_the_same_bits",),
     ),
 )
