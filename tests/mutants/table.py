@@ -630,7 +630,7 @@ CPP = (
     Mutant(
         "chunks that depend on the number of threads",
         f"{CORE}/elastic_operator.cpp",
-        "tets.tets, controls_of_chunk(tets))",
+        "tets.tets, controls_of_chunk(tets), team)",
         "tets.tets, most_controls / std::int64_t(team.size()))",
         ("tests/laws/test_threads.py::test_a_whole_solve_has_the_same_bits",),
     ),
