@@ -206,8 +206,8 @@ PYTHON = (
     Mutant(
         "the tets of an operator in the order of the file in place of the walk's",
         f"{EQUATIONS}/matrix_free.py",
-        "net.starts[dim][entities[net.morton]].astype(np.int32)",
-        "net.starts[dim][entities].astype(np.int32)",
+        "starts[entities[order]].astype(np.int32)",
+        "starts[entities].astype(np.int32)",
         MATRIX_FREE,
     ),
     Mutant(
@@ -510,8 +510,8 @@ CPP = (
     Mutant(
         "chunks that depend on the number of threads",
         f"{CORE}/elastic_operator.cpp",
-        "std::clamp(expected_controls(tets) / shares,",
-        "std::clamp(most_controls / std::int64_t(team.size()),",
+        "tets.tets, controls_of_chunk(tets))",
+        "tets.tets, most_controls / std::int64_t(team.size()))",
         ("tests/laws/test_threads.py::test_a_whole_solve_has_the_same_bits",),
     ),
 )

@@ -19,7 +19,7 @@ class MixedFree:
     """The mixed form of a net and a pressure net as what it does: (u, p) -> (f, g).
 
     Forces f (c, 3) N and changes of volume g (cp,) mm3, for displacements u (c, 3) mm and
-    pressures p (cp,) MPa, positive in compression (paper, eq. 12-20 and 36-42, with the
+    pressures p (cp,) MPa, positive in compression (the paper's second form, with the
     corrections of docs/theory/errata.md):
 
         f_a = int 2 G eps'(u) : eps'(B_a) - p div B_a      eps' = eps - tr(eps) I / 3
