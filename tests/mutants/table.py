@@ -631,7 +631,7 @@ CPP = (
         "chunks that depend on the number of threads",
         f"{CORE}/elastic_operator.cpp",
         "tets.tets, controls_of_chunk(tets), team)",
-        "tets.tets, most_controls / std::int64_t(team.size()))",
+        "tets.tets, most_controls / std::int64_t(team.size()), team)",
         ("tests/laws/test_threads.py::test_a_whole_solve_has_the_same_bits",),
     ),
 )
