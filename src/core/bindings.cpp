@@ -8,8 +8,8 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <limits>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,8 +25,8 @@
 #include "elastic_operator.hpp"
 #include "elasticity.hpp"
 #include "law.hpp"
-#include "pointwise_operator.hpp"
 #include "mixed_operator.hpp"
+#include "pointwise_operator.hpp"
 #include "preconditioner.hpp"
 #include "simplex.hpp"
 #include "vertex_matrix.hpp"
@@ -478,8 +478,9 @@ public:
     }
     bool splits() const { return kernel().mixed_stress != nullptr; }
     void require_compressible() const {
-        require(std::isfinite(law_.parameters[0]),
-                "kappa = inf needs the mixed form: the displacement alone does not give the stress");
+        require(
+            std::isfinite(law_.parameters[0]),
+            "kappa = inf needs the mixed form: the displacement alone does not give the stress");
     }
     void require_split() const {
         require(splits(), "this law has no mixed form: it does not split into shape and volume");
@@ -686,9 +687,9 @@ private:
     }
 
     static nb::tuple told(const bezsoma::Extreme &x, double nothing) {
-        const double value =
-            x.value == nothing ? std::copysign(std::numeric_limits<double>::infinity(), nothing)
-                               : x.value;
+        const double value = x.value == nothing
+                                 ? std::copysign(std::numeric_limits<double>::infinity(), nothing)
+                                 : x.value;
         return nb::make_tuple(value, x.place, x.point);
     }
 

@@ -45,8 +45,8 @@ PointwiseOperator<T>::PointwiseOperator(const ElasticTets &tets,
       lanes_(sizeof(T) == 8 ? kernels.lanes64 : kernels.lanes32), team_(team),
       laws_(std::move(laws)),
       rule_(tets.degree - 1, rule.count, rule.points, rule.weights, rule.values),
-      u_(chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets)), 3),
-      sums_(u_.parts()), extremes_(u_.parts()), seen_(nothing_seen()), scratch_(team.size()) {
+      u_(chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets)), 3), sums_(u_.parts()),
+      extremes_(u_.parts()), seen_(nothing_seen()), scratch_(team.size()) {
     if (pressure)
         p_.emplace(chunks(pressure->degree, pressure->first, cuts(u_.chunks())), 1);
     for (const Law &law : laws_)

@@ -219,8 +219,8 @@ __attribute__((noinline)) void fours(const Rule<T> &rule, int first, int many, c
             rule, first + q, test ? from + q * row : from, test ? to : to + q * row);
     if constexpr (fours_at_once > 1)
         if (q < many)
-            by_threes<components, 1, test, T, lanes>(
-                rule, first + q, test ? from + q * row : from, test ? to : to + q * row);
+            by_threes<components, 1, test, T, lanes>(rule, first + q, test ? from + q * row : from,
+                                                     test ? to : to + q * row);
 }
 
 /// From sums to the points first .. first + many.
@@ -239,8 +239,8 @@ BEZSOMA_INLINE void tested(const Rule<T> &rule, int first, int many, const T *fr
     if (first < 4 * rule.fours)
         fours<components, true, T, lanes>(rule, first, many, from, to);
     else
-        product<components, T, lanes>({rule.controls, many, rule.tests + first, rule.points, from,
-                                       to, first > 0});
+        product<components, T, lanes>(
+            {rule.controls, many, rule.tests + first, rule.points, from, to, first > 0});
 }
 
 } // namespace bezsoma::BEZSOMA_ISA

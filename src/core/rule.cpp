@@ -79,7 +79,7 @@ template <class T> void RuleTables<T>::order_controls(int degree) {
                             orbit.sum[k] = -1;
                     begin_[k + 1] += orbit.sum[k] == 0;
                 }
-                orbit.controls = at[1] == at[0] && at[2] == at[0]   ? 1
+                orbit.controls = at[1] == at[0] && at[2] == at[0]                     ? 1
                                  : at[1] == at[0] || at[2] == at[0] || at[3] == at[0] ? 2
                                                                                       : 4;
                 orbits_.push_back(orbit);

@@ -3,11 +3,11 @@
 // symmetries of a tet.
 //
 // The permutations id, (01)(23), (02)(13), (03)(12) of the vertices form a group with the four
-// characters c_k(j) = + + + +, + + - -, + - + -, + - - +. Controls that they exchange (an orbit) are
-// replaced by their sums with these signs, and the polynomials by their means with them. A part k
-// of the field then has at a point moved by permutation j its value times c_k(j): where the points
-// come in fours, one point and four additions serve for all, and products with constants shrink
-// nearly fourfold. Other points use the same basis without that.
+// characters c_k(j) = + + + +, + + - -, + - + -, + - - +. Controls that they exchange (an orbit)
+// are replaced by their sums with these signs, and the polynomials by their means with them. A part
+// k of the field then has at a point moved by permutation j its value times c_k(j): where the
+// points come in fours, one point and four additions serve for all, and products with constants
+// shrink nearly fourfold. Other points use the same basis without that.
 #pragma once
 
 #include <cstdint>

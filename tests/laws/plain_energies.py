@@ -68,9 +68,7 @@ def st_venant_kirchhoff(H: Complex) -> Complex:
 
 def neo_hooke(H: Complex) -> Complex:
     C, J = cauchy_green(H)
-    return (
-        MU / 2 * (trace(C) - 3) - MU * np.log(J) + (KAPPA - 2 * MU / 3) / 2 * np.log(J) ** 2
-    )
+    return MU / 2 * (trace(C) - 3) - MU * np.log(J) + (KAPPA - 2 * MU / 3) / 2 * np.log(J) ** 2
 
 
 def invariants(H: Complex) -> tuple[Complex, Complex, Complex]:

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-import plain_energies as plain
+
 import pytest
 
 from bezsoma import _core
 from bezsoma.arrays import Floats
+from laws import plain_energies as plain
 from tolerances import ROUNDING
 
 SETS = _core.instruction_sets()
@@ -168,7 +169,10 @@ def test_the_erratum_of_equation_24() -> None:
     H = np.diag([0.2, -0.05, -0.05])[None]
     r = np.sqrt(0.5)
     Q = np.array([[r, -r, 0], [r, r, 0], [0, 0, 1]])
-    for name, turned in (("stiffening_frobenius", 1.252), ("stiffening_frobenius_engineering", 2.0)):
+    for name, turned in (
+        ("stiffening_frobenius", 1.252),
+        ("stiffening_frobenius_engineering", 2.0),
+    ):
         one = _core.Law(name, parameters)
         assert one.stress(H)[0, 0, 0] / 0.2 == pytest.approx(1.252, abs=1e-3)
         back = Q.T @ one.stress(Q @ H @ Q.T)[0] @ Q
@@ -194,13 +198,10 @@ def test_exponential_and_logarithm_to_the_last_digits() -> None:
     H[:, 0, 1] = 2 * s
     tau = _core.Law("stiffening_deviatoric", [1.0, 0.5, 2.5]).stress(H)[:, 0, 1]
     assert np.abs(tau / (s * np.exp(5 * s**2)) - 1).max() < 1e-13 * 700
-    J = np.geomspace(1e-3, 1e3, 4001)
-    H = np.zeros((len(J), 3, 3))
-    H[:, 0, 0] = J - 1
+    H = np.zeros((4000, 3, 3))
+    H[:, 0, 0] = x = np.geomspace(1e-3, 1e3, 4000) - 1
     P = _core.Law("neo_hooke", [1.0, 0.0]).stress(H)[:, 0, 0]
-    assert np.abs(P - np.log(J) / J).max() < 1e-15 * 1e3 * 7
-    small = np.abs(J - 1) < 0.3
-    assert np.abs(P[small] / (np.log1p(H[small, 0, 0]) / J[small]) - 1).max() < 1e-14
+    assert np.abs(P * (1 + x) / np.log1p(x) - 1).max() < 1e-14
 
 
 def test_what_a_law_cannot_bear_is_said() -> None:

@@ -210,8 +210,8 @@ struct Guccione {
         S half[3][3];
         for (int k = 0; k < 3; ++k)
             for (int l = 0; l < 3; ++l)
-                half[k][l] = from[of[0][l]] * r(k, 0) + from[of[1][l]] * r(k, 1) +
-                             from[of[2][l]] * r(k, 2);
+                half[k][l] =
+                    from[of[0][l]] * r(k, 0) + from[of[1][l]] * r(k, 1) + from[of[2][l]] * r(k, 2);
         for (int c = 0; c < 6; ++c) {
             const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
             to[c] = half[k][0] * r(l, 0) + half[k][1] * r(l, 1) + half[k][2] * r(l, 2);

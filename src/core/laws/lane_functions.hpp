@@ -21,7 +21,8 @@ template <> struct Integers<double> {
     typedef long long Int;
     static constexpr int mantissa = 52;
     static constexpr double magic = 6755399441055744.0; // 1.5 2^52: adding it rounds to integers
-    static constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770e-10;
+    static constexpr double ln2_high = 6.93147180369123816490e-01,
+                            ln2_low = 1.90821492927058770e-10;
     static constexpr double least = -708, greatest = 709;
     static constexpr int exp_terms = 13, log_terms = 10;
 };
@@ -73,8 +74,8 @@ template <class R> BEZSOMA_INLINE Exponential<R> exponential(R x) {
     // The low bits of `shifted` are k; above them stands what the shift drops.
     const Int power = (Int)one + ((Int)shifted << I::mantissa);
     const R rr = r * r;
-    return {(R)power, r * exponential_tail<1, I::exp_terms>(rr) +
-                          rr * exponential_tail<2, I::exp_terms>(rr)};
+    return {(R)power,
+            r * exponential_tail<1, I::exp_terms>(rr) + rr * exponential_tail<2, I::exp_terms>(rr)};
 }
 
 /// exp(x); beyond the range of numbers what it is at its end.

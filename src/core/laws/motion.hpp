@@ -50,8 +50,8 @@ template <class S> struct Motion {
             }
         // J = 1 + tr H + tr cof H + det H
         const S second = minor[0][0] + minor[1][1] + minor[2][2];
-        const S higher = second + H[0][0] * minor[0][0] + H[0][1] * minor[0][1] +
-                         H[0][2] * minor[0][2];
+        const S higher =
+            second + H[0][0] * minor[0][0] + H[0][1] * minor[0][1] + H[0][2] * minor[0][2];
         j = tr + higher;
         inverse = reciprocal(j + Plain<S>(1));
         S square = H[0][0] * H[0][0];
@@ -76,8 +76,7 @@ template <class S> struct Motion {
     BEZSOMA_INLINE void green(S (&E)[6]) const {
         for (int c = 0; c < 6; ++c) {
             const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
-            E[c] = (H[k][l] + H[l][k] + H[0][k] * H[0][l] + H[1][k] * H[1][l] +
-                    H[2][k] * H[2][l]) *
+            E[c] = (H[k][l] + H[l][k] + H[0][k] * H[0][l] + H[1][k] * H[1][l] + H[2][k] * H[2][l]) *
                    half();
         }
     }
@@ -94,8 +93,7 @@ template <class S> struct Motion {
 
 /// I2(E) = ((tr E)^2 - E:E) / 2.
 template <class S> BEZSOMA_INLINE S second_invariant(const S (&E)[6]) {
-    return E[0] * E[1] + E[1] * E[2] + E[2] * E[0] -
-           (E[3] * E[3] + E[4] * E[4] + E[5] * E[5]);
+    return E[0] * E[1] + E[1] * E[2] + E[2] * E[0] - (E[3] * E[3] + E[4] * E[4] + E[5] * E[5]);
 }
 
 /// ln J.
