@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import numpy as np
-
 import pytest
 
 from bezsoma import _core
@@ -181,7 +180,7 @@ def test_the_erratum_of_equation_24() -> None:
 
 @pytest.mark.parametrize("gap", [0.0, 1e-12, 1e-8, 1e-4, 0.03, 0.06, 0.2])
 def test_ogden_where_stretches_coincide(gap: float) -> None:
-    """alpha = 2 alone is neo-Hooke, whatever the stretches: two or three of them equal or nearly."""
+    """alpha = 2 alone is neo-Hooke: also where two or three stretches are equal or nearly so."""
     one, other = _core.Law("ogden", [3.0, 0.7, 2.0]), law("neo_hooke_isochoric")
     Q, dH = rotations(20), np.random.default_rng(1).standard_normal((20, 3, 3))
     for stretches in ([1.3, 1.3 + gap, 0.8], [1.1, 1.1 + gap, 1.1 - gap]):

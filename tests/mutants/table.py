@@ -217,8 +217,8 @@ PYTHON = (
     Mutant(
         "the tets of an operator in the order of the file in place of the walk's",
         f"{EQUATIONS}/matrix_free.py",
-        "net.starts[dim][entities[net.morton]].astype(np.int32)",
-        "net.starts[dim][entities].astype(np.int32)",
+        "[starts[entities[order]].astype(np.int32)",
+        "[starts[entities].astype(np.int32)",
         MATRIX_FREE,
     ),
     Mutant(
