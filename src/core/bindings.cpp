@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one file that knows Python. It checks shapes, releases the interpreter and calls the kernels.
+// With its bindings_*.cpp the one place that knows Python. They check shapes, release the
+// interpreter and call the kernels.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -10,12 +11,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include "bindings.hpp"
 
 #include "aggregation.hpp"
 #include "block_csr.hpp"
@@ -35,34 +41,8 @@ namespace nb = nanobind;
 
 namespace {
 
-template <typename T, long... shape>
-using In = nb::ndarray<const T, nb::shape<shape...>, nb::c_contig, nb::device::cpu>;
-template <typename T, long... shape>
-using Out = nb::ndarray<nb::numpy, T, nb::shape<shape...>, nb::c_contig, nb::device::cpu>;
-using Vectors = nb::ndarray<double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Scalars = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-
-/// A NumPy array that owns the vector.
-template <typename T, long... shape>
-Out<T, shape...> handed_over(std::vector<T> &&values, std::initializer_list<std::size_t> sizes) {
-    auto owned = std::make_unique<std::vector<T>>(std::move(values));
-    T *data = owned->data();
-    nb::capsule owner(owned.release(),
-                      [](void *p) noexcept { delete static_cast<std::vector<T> *>(p); });
-    return Out<T, shape...>(data, sizes, owner);
-}
-
-void require(bool holds, const char *what) {
-    if (!holds)
-        throw nb::value_error(what);
-}
-
-/// Lets Python's signal handlers run: Ctrl-C in the middle of a computation.
-void listen_to_signals() {
-    nb::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() != 0)
-        throw nb::python_error();
-}
+using bezsoma::handed_over, bezsoma::In, bezsoma::Out, bezsoma::require, bezsoma::Vectors,
+    bezsoma::Walk, bezsoma::listen_to_signals, bezsoma::numbered_by_walk, bezsoma::Scalars;
 
 /// gradients, volumes, lambda and mu of the same tets.
 struct Tets {
@@ -256,51 +236,6 @@ auto first_controls(In<std::int64_t, -1> order, TetCorners tets,
 
 // ------------------------------------------------------------------ without a matrix
 
-/// Tets in the order of the walk that numbered their controls.
-struct Walk {
-    Walk(int n, In<std::int32_t, -1, -1> first_of_entity, In<std::int64_t, -1> order_of_walk,
-         In<double, -1, 3> where, In<std::int64_t, -1, 4> corners_of_tet,
-         In<std::int64_t, -1> region_of_tet, In<double, -1, 2> lambda_and_mu)
-        : degree(n), first(std::move(first_of_entity)), order(std::move(order_of_walk)),
-          points(std::move(where)), corners(std::move(corners_of_tet)),
-          region(std::move(region_of_tet)), lame(std::move(lambda_and_mu)) {}
-
-    int degree;
-    In<std::int32_t, -1, -1> first;
-    In<std::int64_t, -1> order;
-    In<double, -1, 3> points;
-    In<std::int64_t, -1, 4> corners;
-    In<std::int64_t, -1> region;
-    In<double, -1, 2> lame;
-
-    bezsoma::ElasticTets tets() const {
-        require(degree >= 1 && degree <= 10, "degree must be 1 to 10");
-        require(first.shape(1) == static_cast<std::size_t>(bezsoma::entities_of_tet(degree)),
-                "first must have a column for each entity that holds controls");
-        const std::size_t tets = corners.shape(0);
-        require(tets > 0 && first.shape(0) == tets && order.shape(0) == tets &&
-                    region.shape(0) == tets,
-                "first, order, corners and region must have one row a tet");
-        const auto within = [](const auto &numbers, std::size_t count) {
-            return std::all_of(numbers.data(), numbers.data() + numbers.size(), [=](auto i) {
-                return i >= 0 && static_cast<std::size_t>(i) < count;
-            });
-        };
-        require(within(order, tets) && within(corners, points.shape(0)) &&
-                    within(region, lame.shape(0)),
-                "order, corners and region must number tets, points and rows of lame");
-        return {degree,
-                static_cast<std::int64_t>(tets),
-                first.data(),
-                order.data(),
-                points.data(),
-                corners.data(),
-                region.data(),
-                lame.data(),
-                static_cast<std::int32_t>(lame.shape(0))};
-    }
-};
-
 /// Threads of Python take turns: an operator has one team and one scratch space. Wait for a turn
 /// without the interpreter, which whoever has it may need. Who is told of an iteration has the turn
 /// and may use the operator too: nothing of it is in use between two jobs.
@@ -429,19 +364,6 @@ public:
     }
 
 private:
-    static bool numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
-        std::int32_t next = 0;
-        const std::size_t per_tet = first.shape(1);
-        for (std::size_t i = 0; i < first.size(); ++i) {
-            const std::int32_t run = first.data()[i];
-            if (run < 0 || run > next)
-                return false;
-            if (run == next)
-                next += bezsoma::controls_inside(degree, static_cast<int>(i % per_tet));
-        }
-        return true;
-    }
-
     std::mutex turn_;
     bezsoma::Team team_;
     const bezsoma::Kernels *kernels_;
@@ -649,6 +571,7 @@ NB_MODULE(_core, m) {
         .def("solve", &Saddle::solve, "f"_a, "g"_a, "u"_a, "p"_a, "unit"_a, "volume_weight"_a,
              "rtol"_a, "most"_a, "report"_a)
         .def_prop_ro("bytes", &Saddle::bytes);
+    bezsoma::bind_laws(m);
     m.def("instruction_sets", [] {
         std::vector<std::string> found;
         for (const char *name : {"avx512", "avx2", "baseline"})

@@ -286,6 +286,14 @@ BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int32_t control, int row = 
     return (control < 0 ? foreign_end : own) + std::int64_t{control} * row;
 }
 
+/// Vectors that hold own and foreign controls in one area, where no control has a negative number.
+template <class T> BEZSOMA_INLINE Batches<T> in_one_area(const T *u, T *f) {
+    Batches<T> places = {};
+    places.u = u;
+    places.f = f;
+    return places;
+}
+
 /// Reads `rows` numbers at `begin` of every lane's run into the rows that `order` names.
 template <int rows, class T, int lanes>
 BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *order,

@@ -63,6 +63,7 @@ template <class T> struct Kernel {
     double (*work)(const Batches<T> &); // sum over tets of int tau : eps
 };
 
+struct PointwiseKernels;
 struct MixedKernels;
 
 struct Kernels {
@@ -71,6 +72,7 @@ struct Kernels {
     Kernel<double> f64[10]; // by degree - 1
     Kernel<float> f32[10];
     BlockKernel blocks[10][4]; // by degree - 1 and dimension; empty where no control is inside
+    const PointwiseKernels *pointwise;
     const MixedKernels *mixed;
 };
 

@@ -121,14 +121,6 @@ BEZSOMA_INLINE Lanes<double, lanes> root_volume(const Batch<double, lanes> &tet)
     return det * 6.0;
 }
 
-/// Where the displacement and its forces are gathered and scattered: the chunk's copies.
-BEZSOMA_INLINE Batches<double> places_of_displacement(const MixedBatches &b) {
-    Batches<double> places = {};
-    places.u = b.u;
-    places.f = b.f;
-    return places;
-}
-
 /// What a batch holds of its tets: G stands in mu, 1/kappa in lambda.
 template <int lanes>
 BEZSOMA_INLINE Batch<double, lanes> batch_of_mixed(const MixedBatches &b, std::int64_t i) {
@@ -179,7 +171,7 @@ template <int n, int lanes> void mixed_apply(const MixedBatches &b) {
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R u[3 * controls(n)], f[3 * controls(n)], p[controls(m)];
     R stress[6][controls(m)], trace[controls(m)];
-    const Batches<double> places = places_of_displacement(b);
+    const Batches<double> places = in_one_area<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
         const std::int32_t *first_pressure = b.first_pressure + i * entities_of_pressure * lanes;
@@ -204,7 +196,7 @@ template <int n, int lanes> double mixed_work(const MixedBatches &b) {
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R u[3 * controls(n)], p[controls(m)], zero[controls(m)] = {};
     R stress[6][controls(m)], trace[controls(m)], sum = {};
-    const Batches<double> places = places_of_displacement(b);
+    const Batches<double> places = in_one_area<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
         const R root = root_volume<lanes>(tet), compressibility = tet.lambda * root * root;
@@ -238,7 +230,7 @@ template <int n, int lanes> void mixed_couple(const MixedBatches &b) {
     constexpr int m = n - 1;
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R f[3 * controls(n)], p[controls(m)];
-    const Batches<double> places = places_of_displacement(b);
+    const Batches<double> places = in_one_area<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
         gather_pressure<lanes>(low, b.p, b.first_pressure + i * entities_of_pressure * lanes, p);

@@ -35,6 +35,8 @@ CHOLESKY = ("tests/laws/test_cholesky.py",)
 MATRIX_FREE = ("tests/laws/test_matrix_free.py",)
 MIXED_FREE = ("tests/laws/test_mixed_free.py",)
 MULTIGRID = ("tests/laws/test_multigrid.py",)
+LAWS = ("tests/laws/test_laws_core.py",)
+POINTWISE = ("tests/laws/test_pointwise_free.py",)
 HARD = ("tests/faults/test_hard_problems.py",)
 TEAM = ("tests/faults/test_core.py",)
 MESHES = (
@@ -633,6 +635,76 @@ CPP = (
         "tets.tets, controls_of_chunk(tets), team)",
         "tets.tets, most_controls / std::int64_t(team.size()), team)",
         ("tests/laws/test_threads.py::test_a_whole_solve_has_the_same_bits",),
+    ),
+    Mutant(
+        "a dual product that forgets one half of its change",
+        f"{CORE}/laws/dual.hpp",
+        "return {a.v * b.v, a.v * b.d + a.d * b.v};",
+        "return {a.v * b.v, a.v * b.d};",
+        LAWS,
+    ),
+    Mutant(
+        "an isochoric energy with a quarter of I1 F^-T where a third belongs",
+        f"{CORE}/laws/finite_strain.hpp",
+        "const S b = x.trace * T(2.0 / 3);",
+        "const S b = x.trace * T(2.0 / 4);",
+        LAWS,
+    ),
+    Mutant(
+        "shears counted once in the norm of the strain",
+        f"{CORE}/laws/small_strain.hpp",
+        "Plain<S>(0.5 * shear * shear)",
+        "Plain<S>(0.25 * shear * shear)",
+        LAWS,
+    ),
+    Mutant(
+        "a constant kappa where volume stiffens too",
+        f"{CORE}/laws/small_strain.hpp",
+        "tau[6] = -tr - e[6] * reciprocal(g) * (1 / kappa);",
+        "tau[6] = -tr - e[6] * (1 / kappa);",
+        LAWS,
+    ),
+    Mutant(
+        "Ogden's tangent by plain differences of nearly equal stretches",
+        f"{CORE}/laws/ogden.hpp",
+        "const auto close = square < T(0.0025);",
+        "const auto close = square < T(0.0);",
+        LAWS,
+    ),
+    Mutant(
+        "the shear of fibre and sheet with the stiffness across",
+        f"{CORE}/laws/finite_strain.hpp",
+        "{par[2], par[3], par[3], par[4], par[3], par[4]}",
+        "{par[2], par[3], par[3], par[3], par[3], par[4]}",
+        LAWS,
+    ),
+    Mutant(
+        "an exponential with one term too few",
+        f"{CORE}/laws/lane_functions.hpp",
+        "static constexpr int exp_terms = 13,",
+        "static constexpr int exp_terms = 10,",
+        LAWS,
+    ),
+    Mutant(
+        "points taken in fours, their weights in the order of the rule",
+        f"{CORE}/rule.cpp",
+        "static_cast<T>(mean * weights[q])",
+        "static_cast<T>(mean * weights[i])",
+        POINTWISE,
+    ),
+    Mutant(
+        "all regions of a chunk with the parameters of the first",
+        f"{CORE}/pointwise_operator.cpp",
+        "b.parameters = parameters_[size(group.region)].data();",
+        "b.parameters = parameters_[0].data();",
+        POINTWISE,
+    ),
+    Mutant(
+        "the place of the least J by the number of a batch",
+        f"{CORE}/pointwise_operator.cpp",
+        "x->place = tet_[size(x->place)];",
+        "x->place = x->place / lanes_;",
+        POINTWISE,
     ),
 )
 

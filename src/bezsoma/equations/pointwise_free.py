@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Forces and tangents of any law of the core, without a matrix: by quadrature, compiled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bezsoma import _core, bernstein
+from bezsoma.arrays import Floats
+from bezsoma.equations.inadmissible import refuse_inadmissible
+from bezsoma.equations.matrix_free import walk
+from bezsoma.mesh.control_net import ControlNet
+
+
+@dataclass(frozen=True, eq=False)
+class PointwiseFree:
+    """What a body of given laws answers to displacements (c, 3) mm: forces (c, 3) N, tangents.
+
+    `laws` has one law a region of the mesh. `points` (q, 4) barycentric and `weights` (q,) with sum
+    1 are a quadrature rule (`bernstein.simplex`). With H = grad u and P the law's stress,
+
+        f_a = V sum_q w_q P(H(x_q)) grad B_a(x_q)
+
+    (Roth et al. 1998, eq. 45; doi:10.1111/1467-8659.00289). See docs/theory/laws.md. The answer has
+    the same bits for any number of `threads` (0: all cores). A state that a law cannot bear raises
+    `Inadmissible`, which says where.
+
+    For the linear law any rule of exactness 2 (degree - 1) gives what needs no quadrature:
+
+    >>> from bezsoma.equations.matrix_free import MatrixFree
+    >>> from bezsoma.mesh.solids import block
+    >>> net = ControlNet(block(cells=2), 3)
+    >>> kappa, mu = 2.0, 0.6
+    >>> law = _core.Law("linear", [kappa, mu])
+    >>> u = np.sin(7 * net.points)
+    >>> f = PointwiseFree(net, (law,), *bernstein.simplex(4, 3)).forces(u)
+    >>> K = MatrixFree(net, np.array([[kappa - 2 * mu / 3, mu]]))
+    >>> bool(abs(f - K @ u).max() < 1e-13 * abs(f).max())
+    True
+    """
+
+    net: ControlNet
+    laws: tuple[_core.Law, ...]
+    points: Floats
+    weights: Floats
+    threads: int = 0
+    instructions: str = ""
+
+    @cached_property
+    def kernel(self) -> _core.Pointwise:
+        """The core's side of it."""
+        return self._kernel(single=False)
+
+    @cached_property
+    def single(self) -> _core.Pointwise:
+        """The same in float32: tangents alone."""
+        return self._kernel(single=True)
+
+    def _kernel(self, single: bool) -> _core.Pointwise:
+        return _core.Pointwise(
+            walk(self.net, np.zeros((len(self.net.mesh.regions), 2))),
+            list(self.laws),
+            self.points,
+            self.weights,
+            bernstein.values(self.net.degree - 1, self.points),
+            self.threads,
+            self.instructions,
+            single,
+        )
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether every law has an energy: then tangents are symmetric forms."""
+        return all(law.has_energy for law in self.laws)
+
+    def forces(self, u: Floats) -> Floats:
+        """The internal forces (c, 3) N at u (c, 3) mm."""
+        f = np.empty((self.net.count, 3))
+        self.kernel.forces(np.ascontiguousarray(u, dtype=np.float64), f)
+        refuse_inadmissible(self.kernel, self.net.mesh, self.points, f)
+        return f
+
+    def tangent(self, u: Floats) -> Tangent:
+        """The derivative of the forces at u, as what it does to a change of u."""
+        return Tangent(self, np.array(u, dtype=np.float64, order="C"))
+
+    def energy(self, u: Floats) -> float:
+        """The stored energy [N mm]; every law has to have one."""
+        energy = self.kernel.energy(np.ascontiguousarray(u, dtype=np.float64))
+        refuse_inadmissible(self.kernel, self.net.mesh, self.points, np.array(energy))
+        return energy
+
+    def least_jacobian(self, u: Floats) -> tuple[float, int, int]:
+        """The least J = det(I + H) of all points, with its tet and point; inf at small strain."""
+        f = np.empty((self.net.count, 3))
+        self.kernel.forces(np.ascontiguousarray(u, dtype=np.float64), f)
+        return self.kernel.least_jacobian
+
+
+@dataclass(frozen=True, eq=False)
+class Tangent:
+    """The derivative of the forces at a state u (c, 3) mm: df = tangent.apply(du)."""
+
+    operator: PointwiseFree
+    u: Floats
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether it is a symmetric form."""
+        return self.operator.symmetric
+
+    def apply(self, du: Floats) -> Floats:
+        """The change of the forces (c, 3) N for a change du (c, 3) mm."""
+        df = np.empty_like(self.u)
+        self.operator.kernel.tangent(self.u, np.ascontiguousarray(du, dtype=np.float64), df)
+        return df
+
+    def apply_single(self, du: Floats) -> Floats:
+        """The same in float32 throughout, twice as quick: for directions that need no more."""
+        df = np.empty_like(self._single)
+        self.operator.single.tangent_single(
+            self._single, np.ascontiguousarray(du, dtype=np.float32), df
+        )
+        return df.astype(np.float64)
+
+    @cached_property
+    def _single(self) -> _core.Singles:
+        return self.u.astype(np.float32)
