@@ -167,6 +167,19 @@ class LinearElastic:
         stress: Floats = 2 * self.mu * strain + self.lam * trace[..., None, None] * np.eye(3)
         return stress
 
+    @property
+    def finite(self) -> bool:
+        """False: the strain is small."""
+        return False
+
+    def derivative(self, H: Floats, dH: Floats) -> Floats:
+        """The change of the stress in the direction dH, the same at every H, MPa."""
+        return self.stress(dH)
+
+    def energy(self, H: Floats) -> Floats:
+        """The stored energy tau : eps / 2 (...) N/mm2."""
+        return np.asarray(np.einsum("...ij,...ij->...", self.stress(H), H) / 2)
+
 
 def _incompressible(given: str) -> str:
     return (

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Laws at a point: stress from the displacement gradient, and how it changes in a direction.
+
+A law is all that the nonlinear solver knows of a material. The internal force of every law, at
+small or finite strain, is int P(H) : grad v over the undeformed body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from bezsoma.arrays import Floats
+from bezsoma.errors import InputError
+from bezsoma.mechanics.materials import Material
+
+Stress = Callable[[Floats], Floats]
+Slope = Callable[[Floats, Floats], Floats]
+
+COMPLEX_STEP = 1e-30
+"""No difference is taken, so the step may be as small as squares of it do not show."""
+DIFFERENCE = 6e-6
+"""The cube root of rounding, which central differences like best."""
+
+
+@runtime_checkable
+class Law(Material, Protocol):
+    """A material that is not linear: stress, its derivative, and its energy if it has one.
+
+    `finite` says what the stress is: the first Piola-Kirchhoff stress P, F = I + H, of a law at
+    finite strain; the stress tau, which is symmetric, of one at small strain.
+    """
+
+    @property
+    def finite(self) -> bool:
+        """Whether the strain is finite: stress is P and F = I + H, J = det F > 0."""
+        ...
+
+    def derivative(self, H: Floats, dH: Floats) -> Floats:
+        """The change (..., 3, 3) MPa of the stress at H (..., 3, 3) in the direction dH."""
+        ...
+
+    def energy(self, H: Floats) -> Floats:
+        """The stored energy (...) N/mm2; tau : eps for a law that has none."""
+        ...
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class FunctionLaw:
+    """A law of your own: functions over arrays H (..., 3, 3); MPa.
+
+    It runs through the same solver as the laws of the core, ten to a hundred times slower.
+    `derivative(H, dH)` is exact where you give it. Without it the complex step is taken,
+    Im P(H + i h dH) / h, exact to rounding if the function is made of + - * /, powers, exp, log
+    and `np.linalg.inv` or `det` (W. Squire and G. Trapp, SIAM Rev. 40, 1998,
+    doi:10.1137/S003614459631241X), but not of abs, eigenvalues or max;
+    derivative="differences" takes central differences instead, right to some nine digits, with
+    which Newton's last steps are not quadratic. `energy(H)`, if given, says that the stress is its
+    derivative, so the tangent is symmetric.
+
+    >>> law = FunctionLaw(lambda H: H + H**3, finite=False)
+    >>> H, dH = np.full((3, 3), 0.5), np.eye(3)
+    >>> bool(np.allclose(law.derivative(H, dH), dH * (1 + 3 * H**2), rtol=1e-15))
+    True
+    """
+
+    function: Stress
+    slope: Slope | str
+    stored: Stress | None
+    finite: bool = True
+    linear: bool = field(default=False)
+
+    def __init__(
+        self,
+        stress: Stress,
+        *,
+        derivative: Slope | str = "complex step",
+        energy: Stress | None = None,
+        finite: bool = True,
+    ) -> None:
+        if not callable(stress) or not (energy is None or callable(energy)):
+            raise InputError(
+                "FunctionLaw(stress, energy=...) takes functions of H (..., 3, 3); "
+                f"given were {stress!r} and {energy!r}"
+            )
+        if not callable(derivative) and derivative not in ("complex step", "differences"):
+            raise InputError(
+                f"derivative={derivative!r} of FunctionLaw is not known; give a function of "
+                "(H, dH), 'complex step' or 'differences'"
+            )
+        object.__setattr__(self, "function", stress)
+        object.__setattr__(self, "slope", derivative)
+        object.__setattr__(self, "stored", energy)
+        object.__setattr__(self, "finite", bool(finite))
+        object.__setattr__(self, "linear", False)
+        _answers(self)
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether an energy was given."""
+        return self.stored is not None
+
+    def stress(self, H: Floats) -> Floats:
+        """What the function says, (..., 3, 3) MPa."""
+        return self.function(H)
+
+    def derivative(self, H: Floats, dH: Floats) -> Floats:
+        """The change of the stress in the direction dH, (..., 3, 3) MPa."""
+        if callable(self.slope):
+            return self.slope(H, dH)
+        if self.slope == "complex step":
+            return np.asarray(self.function(H + 1j * COMPLEX_STEP * dH).imag / COMPLEX_STEP)
+        size = np.sqrt((dH**2).sum(axis=(-2, -1), keepdims=True))
+        h = DIFFERENCE / np.where(size > 0, size, 1.0)
+        return np.asarray((self.function(H + h * dH) - self.function(H - h * dH)) / (2 * h))
+
+    def energy(self, H: Floats) -> Floats:
+        """The energy that was given, or stress : H, N/mm2."""
+        if self.stored is not None:
+            return self.stored(H)
+        return np.einsum("...ij,...ij->...", self.function(H), H)
+
+
+def _answers(law: FunctionLaw) -> None:
+    """Refuses a function that does not answer with stress at rest, or cannot be differentiated."""
+    rest = np.zeros((2, 3, 3))
+    shape = np.shape(law.stress(rest))
+    if shape != rest.shape:
+        raise InputError(
+            f"the stress of FunctionLaw answers with shape {shape} for H of shape (2, 3, 3); it "
+            "must give one 3 x 3 stress for each H"
+        )
+    try:
+        slope = law.derivative(rest, np.tile(np.diag([1.0, 0.5, 0.2]), (2, 1, 1)))
+    except (TypeError, AttributeError, np.exceptions.ComplexWarning) as error:
+        raise InputError(
+            f"the derivative of FunctionLaw cannot be taken ({error}); give derivative=a function "
+            "of (H, dH), or 'differences'"
+        ) from error
+    if not (np.isfinite(slope).all() and np.any(slope)):
+        raise InputError(
+            "the derivative of FunctionLaw at rest is zero or not finite: a complex step needs a "
+            "function that works with complex numbers; give derivative=... or 'differences'"
+        )
+
+
+def at_rest(law: Law) -> tuple[float, float]:
+    """Lame's lambda and mu (MPa) of the linear law that a law is near rest.
+
+    Of an anisotropic law, those of the nearest isotropic one: C_iijj = 9 lambda + 6 mu and
+    C_ijij = 3 lambda + 12 mu. A preconditioner needs no more.
+
+    >>> from bezsoma.mechanics.materials import LinearElastic
+    >>> [round(modulus, 12) for modulus in at_rest(LinearElastic(E=2.5, nu=0.25))]
+    [1.0, 1.0]
+    """
+    units = np.eye(9).reshape(9, 3, 3)
+    units = (units + np.swapaxes(units, 1, 2)) / 2
+    C = law.derivative(np.zeros((9, 3, 3)), units).reshape(3, 3, 3, 3)
+    swelling, whole = np.einsum("iijj", C), np.einsum("ijij", C)
+    mu = (3 * whole - swelling) / 30
+    return float((swelling - 6 * mu) / 9), float(mu)
