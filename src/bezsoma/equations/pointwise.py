@@ -14,7 +14,8 @@ from typing import Protocol
 import numpy as np
 
 from bezsoma import bernstein
-from bezsoma.arrays import Floats, Ints
+from bezsoma.arrays import Bools, Floats, Ints
+from bezsoma.errors import Inadmissible
 from bezsoma.mechanics.laws import Law
 from bezsoma.mesh.control_net import ControlNet
 
@@ -43,6 +44,11 @@ class Internal(Protocol):
         """The control net."""
         ...
 
+    @property
+    def symmetric(self) -> bool:
+        """Whether all tangents are symmetric forms."""
+        ...
+
     def forces(self, u: Floats) -> Floats:
         """The internal forces (c, 3) N at u (c, 3) mm: int P : grad B (paper, eq. 45)."""
         ...
@@ -55,8 +61,8 @@ class Internal(Protocol):
         """The stored energy, or int tau : eps where there is none, N mm."""
         ...
 
-    def least_jacobian(self, u: Floats) -> tuple[float, int]:
-        """The least det(I + grad u) over the points of finite laws, and the tet where it is."""
+    def least_jacobian(self, u: Floats) -> tuple[float, int, int]:
+        """The least det(I + grad u) over the points of finite laws: J, tet, point."""
         ...
 
 
@@ -96,10 +102,16 @@ class Pointwise:
         return bernstein.derivatives(self.net.degree, bary), weights
 
     def forces(self, u: Floats) -> Floats:
-        """The internal forces (c, 3) N at u (c, 3) mm."""
+        """The internal forces (c, 3) N at u (c, 3) mm; raises Inadmissible where a law fails."""
         f = np.zeros_like(u)
         for law, tets in self.runs():
-            self.add(f, tets, law.stress(self.gradients(u, tets)))
+            H = self.gradients(u, tets)
+            if law.finite:
+                self._right_side_out(H, tets)
+            with np.errstate(all="ignore"):
+                P = law.stress(H)
+            self._finite(P, tets)
+            self.add(f, tets, P)
         return f
 
     def tangent(self, u: Floats) -> ArrayTangent:
@@ -110,15 +122,43 @@ class Pointwise:
         """The stored energy, or int tau : eps where there is none, N mm."""
         return self.integral(u, lambda law, H: law.energy(H))
 
-    def least_jacobian(self, u: Floats) -> tuple[float, int]:
-        """The least det(I + grad u) over the points of finite laws, and the tet where it is."""
-        least, where = np.inf, -1
+    def least_jacobian(self, u: Floats) -> tuple[float, int, int]:
+        """The least det(I + grad u) over the points of finite laws: J, tet, point."""
+        least = (np.inf, -1, -1)
         for law, tets in self.runs():
             if law.finite:
-                J = np.linalg.det(np.eye(3) + self.gradients(u, tets)).min(axis=1)
-                if not J.min() >= least:
-                    least, where = float(J.min()), int(tets[J.argmin()])
-        return least, where
+                J = np.linalg.det(np.eye(3) + self.gradients(u, tets))
+                if J.min() < least[0]:
+                    t, q = np.unravel_index(J.argmin(), J.shape)
+                    least = (float(J.min()), int(tets[t]), int(q))
+        return least
+
+    def _right_side_out(self, H: Floats, tets: Ints) -> None:
+        J = np.linalg.det(np.eye(3) + H)
+        bad = np.asarray(~(J > 0))
+        if bad.any():
+            raise self._failure("J", J, bad, tets)
+
+    def _finite(self, P: Floats, tets: Ints) -> None:
+        bad = np.asarray(~np.isfinite(P).all(axis=(2, 3)))
+        if bad.any():
+            raise self._failure("number", np.where(bad, np.inf, 0.0), bad, tets)
+
+    def _failure(self, what: str, values: Floats, bad: Bools, tets: Ints) -> Inadmissible:
+        t, q = np.unravel_index(int(np.argmax(bad)), bad.shape)
+        mesh, tet = self.net.mesh, int(tets[t])
+        bary, _ = bernstein.simplex(self.exactness, 3)
+        x, y, z = map(float, bary[q] @ mesh.points[mesh.tets[tet]])
+        region, value = mesh.regions[mesh.region[tet]], float(values[t, q])
+        said = f"J = det F = {value:.3g}" if what == "J" else "a stress that is no finite number"
+        return Inadmissible(
+            f"{said} in tet {tet} of region {region!r} at ({x:.4g}, {y:.4g}, {z:.4g}) mm",
+            what,
+            value,
+            tet,
+            region,
+            (x, y, z),
+        )
 
     def integral(self, u: Floats, density: Callable[[Law, Floats], Floats]) -> float:
         """The integral over the undeformed body of density(law, H) (t, q)."""

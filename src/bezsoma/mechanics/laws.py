@@ -121,7 +121,7 @@ class FunctionLaw:
         """The energy that was given, or stress : H, N/mm2."""
         if self.stored is not None:
             return self.stored(H)
-        return np.einsum("...ij,...ij->...", self.function(H), H)
+        return np.asarray(np.einsum("...ij,...ij->...", self.function(H), H))
 
 
 def _answers(law: FunctionLaw) -> None:
