@@ -3,6 +3,7 @@
 
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.joins import Gap, Graded, Join, Precedence
+from bezsoma.mechanics.laws import FunctionLaw, Law
 from bezsoma.mechanics.loads import BodyForce, Load, PointForce, Pressure, Traction
 from bezsoma.mechanics.materials import LinearElastic, Material
 from bezsoma.mechanics.polynomial import Polynomial
@@ -13,9 +14,11 @@ __all__ = [
     "Body",
     "BodyForce",
     "Fixed",
+    "FunctionLaw",
     "Gap",
     "Graded",
     "Join",
+    "Law",
     "LinearElastic",
     "Load",
     "Material",

@@ -124,6 +124,51 @@ class FunctionLaw:
         return np.asarray(np.einsum("...ij,...ij->...", self.function(H), H))
 
 
+@dataclass(frozen=True)
+class Secant:
+    """A law whose derivative is replaced by its secant, C(H) with stress = C(H) H (paper, eq. 51).
+
+    For laws that have one: tau = E(s) C_1 eps changes to E(s) C_1 d eps, as if E stayed.
+    """
+
+    law: Law
+
+    def __post_init__(self) -> None:
+        if not (self.law.linear or hasattr(self.law, "secant")):
+            raise InputError(
+                f"method='secant': {self.law!r} has no secant; it is for the stiffening laws "
+                "tau = E(s) C eps (paper, eq. 51). Take method='newton'"
+            )
+
+    @property
+    def finite(self) -> bool:
+        """As the law's."""
+        return self.law.finite
+
+    @property
+    def linear(self) -> bool:
+        """As the law's."""
+        return self.law.linear
+
+    @property
+    def symmetric(self) -> bool:
+        """True: the secant of an isotropic law is."""
+        return True
+
+    def stress(self, H: Floats) -> Floats:
+        """The law's stress."""
+        return self.law.stress(H)
+
+    def derivative(self, H: Floats, dH: Floats) -> Floats:
+        """The secant at H times dH."""
+        secant: Slope = getattr(self.law, "secant", self.law.derivative)
+        return secant(H, dH)
+
+    def energy(self, H: Floats) -> Floats:
+        """The law's energy."""
+        return self.law.energy(H)
+
+
 def _answers(law: FunctionLaw) -> None:
     """Refuses a function that does not answer with stress at rest, or cannot be differentiated."""
     rest = np.zeros((2, 3, 3))

@@ -21,15 +21,18 @@ FEW = 6
 Told = Callable[[Iteration], None]
 
 
-@dataclass(frozen=True)
-class Unreached(Exception):  # noqa: N818 - caught by the caller, who knows the body
-    """The load was not reached: the last state in balance, its fraction, the try that failed."""
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """The last state x (n,) in balance, its fraction of the load, and every iteration.
+
+    Where the fraction is below 1, `tried` is the fraction that failed in the end, and `why`.
+    """
 
     x: Floats
     fraction: float
-    tried: float
-    why: str
     path: tuple[Iteration, ...]
+    tried: float = 1.0
+    why: str = ""
 
 
 def steps_checked(steps: Any) -> tuple[float, ...] | None:
@@ -69,12 +72,11 @@ def _pairs(fractions: Sequence[float]) -> zip[tuple[float, float]]:
 
 def loaded(
     system: System, x: Floats, steps: tuple[float, ...] | None, rule: Rule, tell: Told
-) -> tuple[Floats, tuple[Iteration, ...]]:
-    """The state (n,) under the whole load, from x at rest, and every iteration on the way.
+) -> Reached:
+    """The state under the whole load, from x (n,) at rest, or the last that could be reached.
 
     Given steps are taken as they are. Without them the whole load is tried first; a step that
-    fails is halved, and one that took few iterations lets the next be twice as long. Raises
-    Unreached with the last state that was in balance.
+    fails is halved, and one that took few iterations lets the next be twice as long.
     """
     path: list[Iteration] = []
 
@@ -91,13 +93,13 @@ def loaded(
         except StepFailed as failure:
             length /= 2
             if steps is not None or length < SHORTEST:
-                raise Unreached(x, fraction, target, str(failure), tuple(path)) from failure
+                return Reached(x, fraction, tuple(path), target, str(failure))
         else:
             fraction = target
             number += 1
             if len(path) - before <= FEW:
                 length *= 2
-    return x, tuple(path)
+    return Reached(x, 1.0, tuple(path))
 
 
 def _next(fraction: float, length: float, steps: tuple[float, ...] | None) -> float:

@@ -189,13 +189,17 @@ def equilibrium(
 def _forcing(step: _Step, b: Floats, balance: Balance, before: float) -> float:
     """How exactly to solve: as the residual has fallen, and no better than is asked for."""
     now = step.merit(b)
-    target = 0.2 * step.rule.rtol * min(
-        w * max(size, least)
-        for w, size, least in zip(
-            step.system.weights,
-            balance.references,
-            step.floor or (0.0,) * len(balance.references),
-            strict=True,
+    target = (
+        0.2
+        * step.rule.rtol
+        * min(
+            w * max(size, least)
+            for w, size, least in zip(
+                step.system.weights,
+                balance.references,
+                step.floor or (0.0,) * len(balance.references),
+                strict=True,
+            )
         )
     )
     fallen = 0.9 * (now / before) ** 2 if np.isfinite(before) and before > 0 else LOOSEST

@@ -8,20 +8,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import scipy
 
 from bezsoma import bernstein
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.equations import stress as stresses
-from bezsoma.equations.displacement import Equations
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.evaluation import tet_portions
 from bezsoma.mesh.field import Field
+from bezsoma.solvers.newton import Iteration
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +54,8 @@ class Solution:
     residual: float
     free: int
     timings: Mapping[str, float]
+    path: tuple[Iteration, ...] = ()
+    """Every iteration of the load steps, where the body is not linear."""
 
     def __repr__(self) -> str:
         return (
@@ -149,7 +151,25 @@ class Solution:
         }
 
 
-def reactions(equations: Equations, u: Floats) -> dict[str, Reaction]:
+class InBalance(Protocol):
+    """What reactions need of equations."""
+
+    @property
+    def net(self) -> ControlNet:
+        """The control net."""
+        ...
+
+    @property
+    def of_support(self) -> Mapping[str, tuple[Ints, Bools]]:
+        """For each supported place its controls, and which of their components it holds."""
+        ...
+
+    def residual(self, u: Floats) -> Floats:
+        """Applied minus internal forces (c, 3) N."""
+        ...
+
+
+def reactions(equations: InBalance, u: Floats) -> dict[str, Reaction]:
     """The reaction of each supported place: force, and moment about the origin.
 
         force = sum_c f_c,  moment = sum_c x_c x f_c,  f = K u - loads where held
