@@ -16,7 +16,7 @@ from bezsoma import bernstein
 from bezsoma.arrays import Floats, Ints
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import Law
-from bezsoma.mechanics.materials import Material
+from bezsoma.mechanics.materials import LinearElastic, Material
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.evaluation import gradient_controls, tet_portions
 from bezsoma.mesh.field import Field
@@ -44,6 +44,23 @@ def stress(body: Body, displacement: Field) -> BrokenField:
     if all(law.linear for law in body.material_of_region):
         return BrokenField(body.mesh, H.degree, _stress(body, H.controls, body.mesh.region))
     return interpolated(H, lambda H: _stress(body, H, body.mesh.region))
+
+
+def mixed_stress(body: Body, displacement: Field, pressure: Field | BrokenField) -> BrokenField:
+    """The Cauchy stress (t, m, 3, 3) MPa of the mixed form: 2 G eps' - p I (paper, eq. 16).
+
+    G by the region of each tet. Its mean is minus the pressure, to the last bit but rounding.
+    """
+    degree = displacement.degree - 1
+    H = gradient_controls(displacement, slice(None))
+    found = np.empty_like(H)
+    for number, law in enumerate(body.material_of_region):
+        assert isinstance(law, LinearElastic)
+        here = body.mesh.region == number
+        found[here] = law.deviatoric_stress(H[here])
+    raised = bernstein.elevation(pressure.degree, 3, degree - pressure.degree)
+    found -= np.einsum("ab,tb->ta", raised, pressure.of_tet)[..., None, None] * np.eye(3)
+    return BrokenField(body.mesh, degree, found)
 
 
 def volume_change(displacement: Field) -> float:

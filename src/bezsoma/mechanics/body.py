@@ -13,8 +13,9 @@ import numpy as np
 from bezsoma.errors import InputError, unknown
 from bezsoma.mechanics.joins import Gap, Graded, Join, Precedence
 from bezsoma.mechanics.loads import BodyForce, Load, PointForce, Pressure, Traction, load_checked
-from bezsoma.mechanics.materials import Material
+from bezsoma.mechanics.materials import LinearElastic, Material
 from bezsoma.mechanics.meeting import joins_checked
+from bezsoma.mechanics.pairs import pressure_degree_checked
 from bezsoma.mechanics.supports import Support
 from bezsoma.mesh.tets import TetMesh
 
@@ -28,6 +29,16 @@ class Body:
     `materials` is one material for all, or one for every region by name. `supports`, `loads` and
     `joins` are lists; the order of supports and loads does not matter. A body without supports
     may be stated; solving it is refused with the names of the motions that are left.
+
+    With a `pressure_degree` the pressure is an unknown of its own, a continuous polynomial of that
+    degree (the mixed form, which stays right up to nu = 1/2); `incompressible=True` chooses
+    `degree - 1`, the best. With `pressure_breaks=True` it may jump between regions, as it does
+    where materials change; within each region it is continuous.
+
+    >>> from bezsoma.mesh.solids import block
+    >>> water = LinearElastic(E=0.015, nu=0.5)
+    >>> Body(block(), 3, water, [], incompressible=True).pressure_degree
+    2
     """
 
     mesh: TetMesh
@@ -36,6 +47,9 @@ class Body:
     supports: Sequence[Support]
     loads: Sequence[Load] = ()
     joins: Sequence[Join] = ()
+    pressure_degree: int | None = None
+    incompressible: bool = False
+    pressure_breaks: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.mesh, TetMesh):
@@ -50,6 +64,13 @@ class Body:
         for load in self.loads:
             load_checked(load, self.mesh)
         joins_checked(self.joins, self.supports, self.mesh)
+        object.__setattr__(self, "pressure_degree", _pressure_degree(self))
+        _form_checked(self)
+
+    @property
+    def mixed(self) -> bool:
+        """Whether the pressure is an unknown of its own."""
+        return self.pressure_degree is not None
 
     @property
     def material_of_region(self) -> tuple[Material, ...]:
@@ -64,6 +85,46 @@ _LISTS: tuple[tuple[str, Any, str], ...] = (
     ("loads", Traction | Pressure | BodyForce | PointForce, "[Pressure('skin', value=0.001)]"),
     ("joins", Precedence | Graded | Gap, "[Graded(over='rami', to='jaw', band=5)]"),
 )
+
+
+def _pressure_degree(body: Body) -> int | None:
+    """The degree of the pressure as stated or chosen; None where there is none."""
+    for name in ("incompressible", "pressure_breaks"):
+        if not isinstance(getattr(body, name), bool | np.bool_):
+            raise InputError(f"{name} = {getattr(body, name)!r}: it is True or False")
+    given = body.pressure_degree
+    if given is None and body.incompressible:
+        given = body.degree - 1
+    if given is None:
+        if body.pressure_breaks:
+            raise InputError(
+                "pressure_breaks = True, but there is no pressure: give pressure_degree=, or "
+                "incompressible=True, which chooses one less than the degree"
+            )
+        return None
+    return pressure_degree_checked(given, body.degree)
+
+
+def _form_checked(body: Body) -> None:
+    """Refuse a material that the displacement form, or the mixed one, cannot take."""
+    for region, law in zip(body.mesh.regions, body.material_of_region, strict=True):
+        if body.mixed and not isinstance(law, LinearElastic):
+            raise InputError(
+                f"region {region!r} is {law!r}; a pressure of its own goes with linear elasticity "
+                "so far: give LinearElastic(E=..., nu=...), or leave pressure_degree out"
+            )
+        if not body.mixed and isinstance(law, LinearElastic) and law.incompressible:
+            raise InputError(
+                f"region {region!r} has nu = 1/2: volume cannot change there, and the displacement "
+                "alone does not give the stress; give the pressure a degree of its own, "
+                f"{_with_pressure(body.degree)}, or take nu up to 0.49 or so"
+            )
+
+
+def _with_pressure(degree: int) -> str:
+    if degree == 1:
+        return "Body(..., degree=2, incompressible=True) (degree 1 has no stable pressure)"
+    return "Body(..., incompressible=True)"
 
 
 def degree_checked(degree: Any) -> int:

@@ -45,9 +45,16 @@ class LinearElastic:
     and -1 < nu < 1/2, which is checked. Soft tissue of the face: E near 0.015 MPa, nu from 0.45
     to 0.49. As nu nears 1/2 the displacement form stiffens (locking), least at high degree.
 
+    nu = 1/2 is *incompressible*: kappa and lambda are infinite, and the displacement gives the
+    deviatoric stress alone. The pressure is then an unknown of its own: see `Body`'s
+    `pressure_degree`.
+
     >>> tissue = LinearElastic(E=0.015, nu=0.45)
     >>> bool(np.isclose(tissue.kappa, tissue.lam + 2 * tissue.mu / 3))
     True
+    >>> water = LinearElastic(E=0.015, nu=0.5)
+    >>> water.incompressible, water.kappa, water.compressibility
+    (True, inf, 0.0)
     """
 
     E: float
@@ -66,12 +73,17 @@ class LinearElastic:
                 f"nu = {nu:g}: Poisson's ratio of LinearElastic must be above -1, where the "
                 "shear modulus E/(2(1+nu)) is infinite; use -1 < nu < 1/2"
             )
-        if not nu < 0.5:
-            raise InputError(_incompressible(f"nu = {nu:g}"))
+        if not nu <= 0.5:
+            raise InputError(
+                f"nu = {nu:g}: Poisson's ratio of LinearElastic is at most 1/2, where volume "
+                "cannot change at all; beyond it the bulk modulus would be negative, and pressure "
+                "would make the body swell; 0.45 to 0.49 is usual for soft tissue, nu=0.5 is "
+                "incompressible"
+            )
         object.__setattr__(self, "E", E)
         object.__setattr__(self, "nu", nu)
         with np.errstate(all="ignore"):
-            moduli = (self.lam + 2 * self.mu, self.mu)
+            moduli = (0.0 if self.incompressible else self.lam + 2 * self.mu, self.mu)
         if not (all(map(math.isfinite, moduli)) and self.mu > 0):
             raise InputError(
                 f"E = {E:g} MPa, nu = {nu!r}: the moduli lambda and mu leave the range of "
@@ -83,16 +95,19 @@ class LinearElastic:
         """The same law from the shear modulus G and the bulk modulus kappa, both MPa.
 
         E = 9 kappa G / (3 kappa + G), nu = (3 kappa - 2 G) / (2 (3 kappa + G)), the inverse of
-        eqs. 10 and 11 of the paper. For kappa far above G, nu rounds to 1/2: that is refused.
+        eqs. 10 and 11 of the paper. kappa = inf is the incompressible law; one that is so far
+        above G that nu would round to 1/2 is refused, since it would be taken for infinite.
 
         >>> soft = LinearElastic.from_shear_bulk(G=2.0, kappa=5.0)
         >>> bool(np.allclose([soft.mu, soft.kappa], [2, 5], rtol=1e-14))
         True
+        >>> LinearElastic.from_shear_bulk(G=2.0, kappa=math.inf)
+        LinearElastic(E=6.0, nu=0.5)
         """
         G = number(G, "G of LinearElastic.from_shear_bulk")
-        if isinstance(kappa, float) and math.isinf(kappa) and kappa > 0:
-            raise InputError(_incompressible("kappa = inf (nu = 1/2)"))
-        kappa = number(kappa, "kappa of LinearElastic.from_shear_bulk")
+        infinite = isinstance(kappa, float) and math.isinf(kappa) and kappa > 0
+        if not infinite:
+            kappa = number(kappa, "kappa of LinearElastic.from_shear_bulk")
         for name, modulus in (("G", G), ("kappa", kappa)):
             if not modulus > 0:
                 raise InputError(
@@ -101,8 +116,12 @@ class LinearElastic:
                 )
         ratio = G / (3 * kappa)
         nu = (0.5 - ratio) / (1 + ratio)
-        if nu >= 0.5:
-            raise InputError(_incompressible(f"kappa/G = {kappa / G:g} (nu rounds to 1/2)"))
+        if nu >= 0.5 and not infinite:
+            raise InputError(
+                f"kappa/G = {kappa / G:g}: Poisson's ratio rounds to 1/2, so that this kappa could "
+                "not be told from an infinite one; say kappa = inf (incompressible), or take a "
+                "smaller one"
+            )
         return cls(E=3 * G / (1 + ratio), nu=nu)
 
     @property
@@ -117,7 +136,9 @@ class LinearElastic:
 
     @property
     def lam(self) -> float:
-        """Lame's first parameter lambda = E nu / ((1 + nu)(1 - 2 nu)), MPa."""
+        """Lame's first parameter lambda = E nu / ((1 + nu)(1 - 2 nu)), MPa; inf at nu = 1/2."""
+        if self.incompressible:
+            return math.inf
         return self.E * (self.nu / ((1 + self.nu) * (1 - 2 * self.nu)))
 
     @property
@@ -127,8 +148,20 @@ class LinearElastic:
 
     @property
     def kappa(self) -> float:
-        """The bulk modulus kappa = E / (3 (1 - 2 nu)), MPa (eq. 10)."""
+        """The bulk modulus kappa = E / (3 (1 - 2 nu)), MPa (eq. 10); inf at nu = 1/2."""
+        if self.incompressible:
+            return math.inf
         return self.E / (3 * (1 - 2 * self.nu))
+
+    @property
+    def incompressible(self) -> bool:
+        """Whether volume cannot change: nu = 1/2."""
+        return self.nu == 0.5
+
+    @property
+    def compressibility(self) -> float:
+        """1/kappa = 3 (1 - 2 nu) / E, 1/MPa: what the mixed form carries, 0 at nu = 1/2."""
+        return 3 * (1 - 2 * self.nu) / self.E
 
     @property
     def voigt(self) -> Floats:
@@ -162,10 +195,32 @@ class LinearElastic:
         >>> float(abs(LinearElastic(1.0, 0.3).stress(spin)).max())
         0.0
         """
+        if self.incompressible:
+            raise InputError(
+                "nu = 1/2: the displacement does not give the stress, whose pressure is an unknown "
+                "of its own; take deviatoric_stress(H) - p I"
+            )
         strain = (H + np.swapaxes(H, -1, -2)) / 2
         trace = np.trace(strain, axis1=-2, axis2=-1)
         stress: Floats = 2 * self.mu * strain + self.lam * trace[..., None, None] * np.eye(3)
         return stress
+
+    def deviatoric_stress(self, H: Floats) -> Floats:
+        """The deviatoric stress (..., 3, 3) MPa at H (..., 3, 3): 2 G (eps - tr(eps)/3 I).
+
+        Paper, eqs. 13 and 16 with 18: stress = 2 G eps' - p I, p > 0 in compression. With the
+        pressure p = -kappa tr(eps) of eqs. 14 and 12 it is the stress of eq. 5:
+
+        >>> H = np.arange(9.0).reshape(3, 3) ** 2
+        >>> tissue = LinearElastic(E=2.0, nu=0.3)
+        >>> p = -tissue.kappa * np.trace(H)
+        >>> bool(np.allclose(tissue.deviatoric_stress(H) - p * np.eye(3), tissue.stress(H)))
+        True
+        """
+        strain = (H + np.swapaxes(H, -1, -2)) / 2
+        mean = np.trace(strain, axis1=-2, axis2=-1)[..., None, None] / 3
+        deviatoric: Floats = 2 * self.mu * (strain - mean * np.eye(3))
+        return deviatoric
 
     @property
     def finite(self) -> bool:
@@ -179,11 +234,3 @@ class LinearElastic:
     def energy(self, H: Floats) -> Floats:
         """The stored energy tau : eps / 2 (...) N/mm2."""
         return np.asarray(np.einsum("...ij,...ij->...", self.stress(H), H) / 2)
-
-
-def _incompressible(given: str) -> str:
-    return (
-        f"{given}: LinearElastic needs nu < 1/2; from 1/2 on volume cannot change and the "
-        "displacement alone does not give the stress: that needs the mixed form with a pressure, "
-        "which is not there yet; use nu up to 0.49 or so (0.45 to 0.49 is usual for soft tissue)"
-    )

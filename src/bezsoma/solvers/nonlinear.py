@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -27,26 +26,13 @@ from bezsoma.mesh.field import Field
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
 from bezsoma.solvers.multigrid import preconditioner
 from bezsoma.solvers.newton import Balance, Iteration, Rule, System
-from bezsoma.solvers.solution import Solution, reactions
+from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.tangents import Precondition, applied_tangents, factored_tangents
+from bezsoma.solvers.watch import Watch
 
 METHODS = {"newton": (True, 30), "modified": (False, 200), "secant": (True, 500)}
 """Whether the tangent is formed anew in each iteration, and how many there may be."""
 SOLVERS = ("auto", "direct", "multigrid")
-
-
-class Watch(Protocol):
-    """Whom to tell what is being done."""
-
-    timings: dict[str, float]
-
-    def stage(self, name: str, note: str) -> AbstractContextManager[None]:
-        """A stage that is timed."""
-        ...
-
-    def tell(self, name: str, fraction: float | None, note: str) -> None:
-        """How far it is."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -76,25 +62,6 @@ def is_linear(body: Body) -> bool:
     """Whether all laws are linear and no load follows: then one linear solve is the answer."""
     follows = any(isinstance(load, Pressure) and load.following for load in body.loads)
     return not follows and all(law.linear for law in body.material_of_region)
-
-
-@dataclass(frozen=True, eq=False)
-class _InBalance:
-    """The equations at one fraction of the load, for reactions."""
-
-    equations: NonlinearEquations
-    fraction: float
-
-    @property
-    def net(self) -> ControlNet:
-        return self.equations.net
-
-    @property
-    def of_support(self) -> Any:
-        return self.equations.of_support
-
-    def residual(self, u: Floats) -> Floats:
-        return self.equations.applied(u, self.fraction) - self.equations.internal.forces(u)
 
 
 def nonlinear_solution(
@@ -231,12 +198,13 @@ def _solution(
 ) -> Solution:
     displacement = Field(equations.net, frozen(reached.x.reshape(-1, 3).copy()))
     u = displacement.controls
+    pull = internal.forces(u) - equations.applied(u, reached.fraction)
     history = tuple(iteration.residual for iteration in reached.path)
     in_balance = [each for each in reached.path if each.fraction <= reached.fraction]
     return Solution(
         body_at(equations.body, reached.fraction),
         displacement,
-        reactions(_InBalance(equations, reached.fraction), u),
+        resultants(equations.net, equations.of_support, pull),
         internal.energy(u),
         swelling(equations.body, displacement),
         how,
@@ -245,7 +213,7 @@ def _solution(
         in_balance[-1].residual if in_balance else 0.0,
         equations.free,
         timings,
-        reached.path,
+        path=reached.path,
     )
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.metadata import version
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import scipy
@@ -16,6 +16,8 @@ import scipy
 from bezsoma import bernstein
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.equations import stress as stresses
+from bezsoma.equations import volume
+from bezsoma.equations.displacement import Equations
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
@@ -41,6 +43,12 @@ class Solution:
     iteration, the Euclidean norm over the free components relative to that at zero free
     displacement; `residual` is the one attained, taken anew from the equations. `energy` is the
     stored energy, `volume_change` is int div u in mm3. `timings` has seconds by stage.
+
+    `pressure` [MPa], positive in compression, is there where the body has one of its own: a
+    continuous Field, or one that breaks between regions. `level` says what determines its level,
+    `held_tets` counts tets all four vertices of which are prescribed (see `unlocked`). `advice`
+    is what another form would do better; often nothing. Where the body is not linear, `path` has
+    every iteration of the load steps.
     """
 
     body: Body
@@ -54,8 +62,11 @@ class Solution:
     residual: float
     free: int
     timings: Mapping[str, float]
+    pressure: Field | BrokenField | None = None
+    level: str = ""
+    held_tets: int = 0
+    advice: str = ""
     path: tuple[Iteration, ...] = ()
-    """Every iteration of the load steps, where the body is not linear."""
 
     def __repr__(self) -> str:
         return (
@@ -80,7 +91,27 @@ class Solution:
 
         `stress.averaged()` is the continuous field for pictures and probes.
         """
+        if self.pressure is not None:
+            return stresses.mixed_stress(self.body, self.displacement, self.pressure)
         return stresses.stress(self.body, self.displacement)
+
+    @cached_property
+    def divergence(self) -> BrokenField:
+        """The volumetric strain div u of small strains; of degree n - 1, jumps between tets.
+
+        At nu = 1/2 the mixed form makes int q div u vanish for every pressure q of its degree, not
+        div u at every point; how large it is there says how fine the mesh is.
+        """
+        return volume.divergence(self.displacement)
+
+    @cached_property
+    def determinant(self) -> BrokenField:
+        """det(I + grad u) - 1: the local change of volume of the points moved to x + u(x).
+
+        Beware: small-strain equations do not make it vanish, even where they are solved exactly;
+        it is of second order in grad u. *Interpolated* beyond degree 4 of the displacement.
+        """
+        return volume.determinant(self.displacement)
 
     @cached_property
     def von_mises(self) -> BrokenField:
@@ -126,9 +157,11 @@ class Solution:
         """The numbers of this solution for a JSON file; mm, N, N mm, s."""
         mesh, net = self.body.mesh, self.net
         sizes = {"tets": len(mesh.tets), "vertices": len(mesh.points), "controls": net.count}
+        unknowns = {"unknowns": 3 * net.count, "free_unknowns": self.free}
         return {
-            "sizes": {**sizes, "unknowns": 3 * net.count, "free_unknowns": self.free},
+            "sizes": {**sizes, **unknowns},
             "degree": net.degree,
+            **self._of_pressure(),
             "method": self.method,
             "iterations": self.iterations,
             "residual": self.residual,
@@ -150,26 +183,29 @@ class Solution:
             },
         }
 
-
-class InBalance(Protocol):
-    """What reactions need of equations."""
-
-    @property
-    def net(self) -> ControlNet:
-        """The control net."""
-        ...
-
-    @property
-    def of_support(self) -> Mapping[str, tuple[Ints, Bools]]:
-        """For each supported place its controls, and which of their components it holds."""
-        ...
-
-    def residual(self, u: Floats) -> Floats:
-        """Applied minus internal forces (c, 3) N."""
-        ...
+    def _of_pressure(self) -> dict[str, Any]:
+        """What the mixed form adds to the summary."""
+        if self.pressure is None:
+            return {"advice": self.advice} if self.advice else {}
+        low, high = _range(self.pressure)
+        return {
+            "pressure_degree": self.pressure.degree,
+            "pressure_level": self.level,
+            "pressure_range": [low, high],
+            "held_tets": self.held_tets,
+            "largest_divergence": self.divergence.largest()[0],
+            "largest_determinant": self.determinant.largest()[0],
+        }
 
 
-def reactions(equations: InBalance, u: Floats) -> dict[str, Reaction]:
+def _range(field: Field | BrokenField) -> tuple[float, float]:
+    """The least and the largest value in the domain points of every tet."""
+    bary = bernstein.domain_points(field.degree, 3)
+    found = [field.tabulated(bary, part) for part in tet_portions(field, len(bary))]
+    return min(float(x.min()) for x in found), max(float(x.max()) for x in found)
+
+
+def reactions(equations: Equations, u: Floats) -> dict[str, Reaction]:
     """The reaction of each supported place: force, and moment about the origin.
 
         force = sum_c f_c,  moment = sum_c x_c x f_c,  f = K u - loads where held
@@ -178,9 +214,15 @@ def reactions(equations: InBalance, u: Floats) -> dict[str, Reaction]:
     motion are its values at the domain points x_c (linear precision), so that x_c x f_c summed is
     the work of the forces on a turn. Positions are those before the deformation.
     """
-    points, out = equations.net.points, {}
-    pull = -equations.residual(u)
-    for place, (controls, components) in equations.of_support.items():
+    return resultants(equations.net, equations.of_support, -equations.residual(u))
+
+
+def resultants(
+    net: ControlNet, of_support: Mapping[str, tuple[Ints, Bools]], pull: Floats
+) -> dict[str, Reaction]:
+    """The force and moment of each supported place from the forces (c, 3) on its controls."""
+    points, out = net.points, {}
+    for place, (controls, components) in of_support.items():
         f = np.where(components, pull[controls], 0.0)
         out[place] = Reaction(f.sum(axis=0), np.cross(points[controls], f).sum(axis=0))
     return out

@@ -3,12 +3,9 @@
 
 from __future__ import annotations
 
-import math
 import os
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from time import perf_counter
 
 import numpy as np
 
@@ -28,16 +25,15 @@ from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import direct
 from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_cholesky
 from bezsoma.solvers.memory import refuse_what_does_not_fit
+from bezsoma.solvers.mixed import mixed_solution
 from bezsoma.solvers.multigrid import multigrid
 from bezsoma.solvers.nonlinear import Loading, is_linear, nonlinear_solution
 from bezsoma.solvers.solution import Solution, reactions
+from bezsoma.solvers.watch import Progress, Watch, in_range
 
 MOST_THREADS = 1024
-Progress = Callable[[str, float | None, str], None]
-"""Called with a stage, how much of it is done (0 to 1, None where unknown) and a note."""
-
 Steps = int | str | Sequence[float]
-SOLVERS = ("auto", "direct", "multigrid", "cg")
+SOLVERS = ("auto", "direct", "multigrid", "cg", "minres")
 DIRECT_UP_TO = 3000
 """Unknowns up to which the direct solver is chosen: above, multigrid is ahead at every degree."""
 
@@ -57,7 +53,8 @@ def solve(
 
     Solves the displacement form, int tau(u) : eps(v) = loads on v for all v that are zero where
     something is prescribed (paper, eq. 7 and 33). Beware of nu close to 1/2, where this form
-    stiffens; degrees of 3 and more suffer least.
+    stiffens; degrees of 3 and more suffer least. A body with a pressure of its own is solved in
+    the mixed form, which holds up to nu = 1/2: see `bezsoma.equations.mixed`.
 
     A bar that is drawn out to twice a strain of 1 % carries E times that, whatever its degree:
 
@@ -78,7 +75,8 @@ def solve(
         solver: "direct" (a sparse factorisation, to rounding), "multigrid" (conjugate gradients
             without a matrix, preconditioned by blocks of entities and multigrid), "cg" (the
             paper's: with an incomplete Cholesky factorisation), or "auto": direct up to
-            `DIRECT_UP_TO` unknowns, multigrid above.
+            `DIRECT_UP_TO` unknowns, multigrid above. With a pressure: "direct", "minres" (without
+            a matrix, preconditioned), or "auto".
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
             for others relative to the larger of internal and applied forces, the work of the
@@ -100,49 +98,21 @@ def solve(
             in steps, with the last state in balance.
     """
     loading = Loading(steps, method, exactness)
-    watch = _Watch(progress)
-    number = _threads(threads)
-    if isinstance(body, Body) and not is_linear(body):
-        tolerance = 1e-10 if rtol is None else rtol
-        _check(body, solver, tolerance)
-        return nonlinear_solution(body, solver, tolerance, number, loading, watch)
-    rtol = 1e-8 if rtol is None else rtol
+    linear = not isinstance(body, Body) or is_linear(body)
+    rtol = (1e-8 if linear else 1e-10) if rtol is None else rtol
     _check(body, solver, rtol)
+    watch = Watch(progress)
+    number = _threads(threads)
+    if not linear:
+        return nonlinear_solution(body, solver, rtol, number, loading, watch)
+    if body.mixed:
+        return mixed_solution(body, solver, rtol, number, watch)
     chosen, why, equations = _equations(body, solver, number, watch)
     b = equations.residual(equations.given)
-    _check_range(b, "the forces at zero free displacement")
+    in_range(b, "the forces at zero free displacement")
     b[equations.held] = 0.0
     found = _solved(equations, b, chosen, why, rtol, watch)
     return _solution(body, equations, found, number, watch)
-
-
-@dataclass
-class _Watch:
-    """Seconds by stage, and whom to tell."""
-
-    progress: Progress | None
-    timings: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def stage(self, name: str, note: str) -> Iterator[None]:
-        start = perf_counter()
-        self.tell(name, None, note)
-        yield
-        self.timings[name] = perf_counter() - start
-
-    def tell(self, name: str, fraction: float | None, note: str) -> None:
-        if self.progress:
-            self.progress(name, fraction, note)
-
-    def iterations(self, rtol: float) -> Report:
-        """What tells of iterations: how far the residual has come, on a scale of its logarithm."""
-
-        def report(iteration: int, residual: float) -> None:
-            far = 1.0 if residual == 0 else math.log(residual) / math.log(rtol)
-            note = f"iteration {iteration}, residual {residual:.1e}"
-            self.tell("solving", min(max(far, 0.0), 1.0), note)
-
-        return report
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,16 +127,13 @@ def _check(body: Body, solver: str, rtol: float) -> None:
         raise InputError(f"solve() was given {body!r}; it solves a Body")
     if solver not in SOLVERS:
         raise InputError(unknown("solver", solver, SOLVERS, "solve()"))
+    if solver == "minres" and not body.mixed:
+        raise InputError(
+            "solver = 'minres' is for bodies with a pressure of their own, and this one has none: "
+            "give Body(..., incompressible=True), or take 'multigrid'"
+        )
     if not (isinstance(rtol, int | float) and 0 < rtol < 1):
         raise InputError(f"rtol = {rtol!r} has to lie between 0 and 1; 1e-8 serves most")
-
-
-def _check_range(numbers: Floats, what: str) -> None:
-    if not np.isfinite(numbers).all():
-        raise InputError(
-            f"{what} leave the range of floating-point numbers; check the units of E (MPa), of the "
-            "loads (N) and of the mesh (mm)"
-        )
 
 
 def _threads(asked: int | None) -> int:
@@ -185,7 +152,7 @@ def _threads(asked: int | None) -> int:
     return number
 
 
-def _equations(body: Body, solver: str, threads: int, watch: _Watch) -> tuple[str, str, Equations]:
+def _equations(body: Body, solver: str, threads: int, watch: Watch) -> tuple[str, str, Equations]:
     with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
         lame = lame_constants(body)
         net = ControlNet(body.mesh, body.degree)
@@ -220,7 +187,7 @@ def _choice(free: int, solver: str) -> tuple[str, str]:
 
 
 def _solved(
-    equations: Equations, b: Floats, chosen: str, why: str, rtol: float, watch: _Watch
+    equations: Equations, b: Floats, chosen: str, why: str, rtol: float, watch: Watch
 ) -> _Found:
     with watch.stage("solving", f"{chosen}: {why}"):
         if not b.any():
@@ -266,7 +233,7 @@ def _iteratively(equations: Equations, b: Floats, rtol: float, report: Report) -
 
 
 def _solution(
-    body: Body, equations: Equations, found: _Found, threads: int, watch: _Watch
+    body: Body, equations: Equations, found: _Found, threads: int, watch: Watch
 ) -> Solution:
     with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
         found.x[...] += equations.given
@@ -276,7 +243,7 @@ def _solution(
             operator = MatrixFree(equations.net, lame_constants(body), threads)
         energy, swelling = operator.energy(displacement.controls), volume_change(displacement)
         supports = reactions(equations, displacement.controls)
-    _check_range(np.array([energy, swelling]), "the energy and the change of volume")
+    in_range(np.array([energy, swelling]), "the energy and the change of volume")
     return Solution(
         body,
         displacement,

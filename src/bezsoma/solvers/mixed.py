@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From a body with a pressure of its own to displacement and pressure."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bezsoma import bernstein
+from bezsoma.arrays import Floats, frozen
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.forces import forces
+from bezsoma.equations.level import refuse_flux, undetermined, without_mean
+from bezsoma.equations.locked import refuse_undetermined
+from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.mixed import (
+    MixedEquations,
+    MixedMatrix,
+    MixedOperator,
+    deviatoric_lame,
+    mixed_matrix,
+    mixed_moduli,
+)
+from bezsoma.equations.rigid import refuse_rigid_motions
+from bezsoma.equations.stress import volume_change
+from bezsoma.errors import InputError, NotConverged
+from bezsoma.mechanics.body import Body
+from bezsoma.mesh.broken_field import BrokenField
+from bezsoma.mesh.control_net import ControlNet
+from bezsoma.mesh.evaluation import mass_product
+from bezsoma.mesh.field import Field
+from bezsoma.mesh.torn import pressure_net
+from bezsoma.solvers.krylov import Report
+from bezsoma.solvers.memory import refuse_what_does_not_fit
+from bezsoma.solvers.saddle_direct import direct_saddle
+from bezsoma.solvers.solution import Solution, resultants
+from bezsoma.solvers.watch import Watch, in_range
+
+MIXED_SOLVERS = ("auto", "direct", "minres")
+DIRECT_UP_TO = 6000
+"""Unknowns up to which the direct solver is chosen for the mixed form."""
+
+
+def mixed_solution(body: Body, solver: str, rtol: float, threads: int, watch: Watch) -> Solution:
+    """Displacement and pressure of a body that has one: see `solve`."""
+    chosen, why, equations, locked = _equations(body, solver, threads, watch)
+    u, p, method, history = _solved(equations, chosen, why, rtol, watch)
+    with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
+        displacement = Field(equations.net, frozen(u))
+        pressure = _pressure(body, equations.pressure_net, frozen(p))
+        energy = _energy(body, displacement, pressure, threads)
+        swelling = volume_change(displacement)
+        pull = -equations.residuals(u, p)[0]
+        supports = resultants(equations.net, equations.of_support, pull)
+    in_range(np.array([energy, swelling]), "the energy and the change of volume")
+    return Solution(
+        body,
+        displacement,
+        supports,
+        energy,
+        swelling,
+        method,
+        tuple(history),
+        max(len(history) - 1, 0),
+        history[-1] if history else 0.0,
+        equations.free,
+        watch.timings,
+        pressure,
+        _level(len(equations.modes)),
+        locked,
+    )
+
+
+def _level(modes: int) -> str:
+    """What determines the level of the pressure, for the summary."""
+    if not modes:
+        return "determined: some of the boundary is free along its normal, or nu is below 1/2"
+    where = "the body" if modes == 1 else f"each of {modes} parts"
+    return (
+        f"not determined, since the whole boundary of {where} is prescribed and nu = 1/2: the mean "
+        "of the pressure is set to zero"
+    )
+
+
+def _equations(
+    body: Body, solver: str, threads: int, watch: Watch
+) -> tuple[str, str, MixedEquations, int]:
+    assert body.pressure_degree is not None
+    with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
+        net = ControlNet(body.mesh, body.degree)
+        pressures = pressure_net(body.mesh, body.pressure_degree, body.pressure_breaks)
+        moduli = mixed_moduli(body)
+        soft = moduli[body.mesh.region, 1] > 0
+    with watch.stage("supports", f"{3 * net.count} displacements, {pressures.count} pressures"):
+        known = prescribed(body, net)
+        refuse_rigid_motions(net, known.mask)
+        locked = refuse_undetermined(net, pressures, known.mask, soft)
+        modes = undetermined(net, pressures, known.mask, soft)
+        refuse_flux(net, pressures, modes, soft, known.values)
+    free = int(known.mask.size - known.mask.sum()) + pressures.count
+    chosen, why = mixed_choice(free, solver)
+    refuse_what_does_not_fit(net, "direct" if chosen == "direct" else "multigrid")
+    with watch.stage("loads", f"{len(body.loads)} given"):
+        loads = forces(body, net)
+    with watch.stage("stiffness", f"{free} unknowns"):
+        operator = _operator(chosen, net, pressures, moduli, threads)
+    supports = (known.mask, known.values, known.of_support)
+    equations = MixedEquations(net, pressures, operator, loads, *supports, modes)
+    return chosen, why, equations, locked
+
+
+def _operator(
+    chosen: str, net: ControlNet, pressures: ControlNet, moduli: Floats, threads: int
+) -> MixedOperator:
+    if chosen == "direct":
+        return mixed_matrix(net, pressures, moduli, threads)
+    from bezsoma.equations.mixed_free import MixedFree
+
+    return MixedFree(net, pressures, moduli, threads)
+
+
+def _solved(
+    equations: MixedEquations, chosen: str, why: str, rtol: float, watch: Watch
+) -> tuple[Floats, Floats, str, list[float]]:
+    with watch.stage("solving", f"{chosen}: {why}"):
+        zero = np.zeros(equations.pressure_net.count)
+        f, g = equations.residuals(equations.given, zero)
+        in_range(f, "the forces at zero free displacement")
+        f[equations.held] = 0.0
+        if not (f.any() or g.any()):
+            reason = "nothing to solve: no free component is out of balance"
+            return equations.given.copy(), zero, reason, []
+        report = watch.iterations(rtol)
+        if isinstance(equations.operator, MixedMatrix):
+            u, p, history = direct_saddle(equations, equations.operator, report)
+            if not history[-1] <= rtol:
+                raise NotConverged(_stopped(history[-1], rtol), history)
+            return u, p, f"direct (SuperLU of both equations, scaled and refined), {why}", history
+        return _iterated(equations, f, g, why, rtol, report)
+
+
+def _iterated(
+    equations: MixedEquations, f: Floats, g: Floats, why: str, rtol: float, report: Report
+) -> tuple[Floats, Floats, str, list[float]]:
+    from bezsoma.equations.mixed_free import MixedFree
+    from bezsoma.solvers.saddle import saddle
+
+    assert isinstance(equations.operator, MixedFree)
+    size = max(float(np.abs(f).max()), float(np.abs(g).max()))
+    held, modes = equations.held, equations.modes
+    u, p, history = saddle(equations.operator, held, f / size, g / size, modes, rtol, report)
+    u = u * size + equations.given
+    p = without_mean(p * size, modes, equations.pressure_net)
+    return u, p, f"MINRES without a matrix, {why}", history
+
+
+def _stopped(left: float, rtol: float) -> str:
+    return (
+        f"the direct solver is left with {left:.3g} of the residual at zero free displacement, and "
+        f"rtol = {rtol:g} was asked for: rounding stops it there. Take a larger rtol, or look for "
+        "tets that are almost flat, pressures that hardly anything determines (tets all four "
+        "vertices of which are prescribed: solve(unlocked(body))), and very unequal materials"
+    )
+
+
+def _pressure(body: Body, net: ControlNet, p: Floats) -> Field | BrokenField:
+    if net.mesh is body.mesh:
+        return Field(net, p)
+    return BrokenField(body.mesh, net.degree, frozen(p[net.of_tet]))
+
+
+def _energy(body: Body, displacement: Field, pressure: Field | BrokenField, threads: int) -> float:
+    """The stored energy int G eps' : eps' + p^2 / (2 kappa) [N mm]."""
+    moduli = mixed_moduli(body)
+    shear = MatrixFree(displacement.net, deviatoric_lame(moduli), threads)
+    softness = body.mesh.volumes * moduli[body.mesh.region, 1]
+    mass = bernstein.mass(pressure.degree, pressure.degree, 3)
+    return shear.energy(displacement.controls) + mass_product(mass, pressure.of_tet, softness) / 2
+
+
+def mixed_choice(free: int, solver: str) -> tuple[str, str]:
+    """The solver for so many unknowns, and why."""
+    if solver not in MIXED_SOLVERS:
+        raise InputError(
+            f"solver = {solver!r} solves for a displacement alone, and this body has a pressure of "
+            "its own; take 'direct' or 'minres', or 'auto', which chooses between them"
+        )
+    if solver != "auto":
+        return solver, "as asked for"
+    if free <= DIRECT_UP_TO:
+        return "direct", f"since {free} unknowns are not more than {DIRECT_UP_TO}"
+    return "minres", f"since {free} unknowns are more than {DIRECT_UP_TO}"
