@@ -100,4 +100,71 @@ class Multigrid:
     @property
     def bytes(self) -> int: ...
 
+class Law:
+    """A material law at points: parameters in the order of docs/theory/laws.md, kappa first.
+
+    linear (kappa, mu); stiffening_frobenius, stiffening_mean, stiffening_frobenius_engineering,
+    stiffening_mean_engineering, stiffening_energy, stiffening_deviatoric (kappa, mu, A);
+    st_venant_kirchhoff, neo_hooke, neo_hooke_isochoric (kappa, mu); mooney_rivlin and
+    veronda_westmann (kappa, c1, c2); ogden (kappa, mu_1, alpha_1, mu_2, alpha_2, ...);
+    guccione (kappa, C, bf, bt, bfs, f (3), s (3), n (3)). kappa = inf is for the mixed form only.
+
+    P is tested against grad v: the stress tau at small strain, first Piola-Kirchhoff at finite
+    strain. The mixed form has P(H, p) and c(H, p), tested against q: - tr eps - p/kappa at small
+    strain, - (J - 1) - p/kappa at finite strain.
+    """
+
+    def __init__(self, name: str, parameters: Floats, instructions: str = "") -> None: ...
+    def stress(self, H: Floats) -> Floats: ...
+    def derivative(self, H: Floats, dH: Floats) -> Floats: ...
+    def energy(self, H: Floats) -> Floats: ...
+    def mixed_stress(self, H: Floats, p: Floats) -> tuple[Floats, Floats]: ...
+    def mixed_derivative(
+        self, H: Floats, p: Floats, dH: Floats, dp: Floats
+    ) -> tuple[Floats, Floats]: ...
+    def mixed_energy(self, H: Floats, p: Floats) -> Floats: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def parameters(self) -> list[float]: ...
+    @property
+    def finite(self) -> bool:
+        """Whether H may be large: J > 0 is asked for."""
+    @property
+    def has_energy(self) -> bool: ...
+    @property
+    def splits(self) -> bool:
+        """Whether the law has a mixed form."""
+
+def law_names() -> list[str]: ...
+
+class Pointwise:
+    """Forces and tangents of laws, one a region, by quadrature without a matrix.
+
+    values (q, m): the Bernstein polynomials of degree - 1 at the points; weights (q,) with sum 1.
+    """
+
+    def __init__(
+        self,
+        walk: Walk,
+        laws: list[Law],
+        values: Floats,
+        weights: Floats,
+        threads: int = 0,
+        instructions: str = "",
+    ) -> None: ...
+    def forces(self, u: Floats, f: Floats) -> None: ...
+    def tangent(self, u: Floats, du: Floats, df: Floats) -> None: ...
+    def energy(self, u: Floats) -> float: ...
+    @property
+    def least_jacobian(self) -> tuple[float, int, int]:
+        """J, tet, point of the last forces(); J = inf if no law asks for it."""
+    @property
+    def greatest_exponent(self) -> tuple[float, int, int]:
+        """Argument of exp, tet, point of the last forces(); -inf if no law has one."""
+    @property
+    def instructions(self) -> str: ...
+    @property
+    def threads(self) -> int: ...
+
 def instruction_sets() -> list[str]: ...
