@@ -67,27 +67,6 @@ class Inadmissible(BezSomaError):
         self.tet, self.region, self.point = tet, region, point
 
 
-class Inadmissible(BezSomaError):
-    """A state that a law cannot bear: J <= 0, an exponential that overflows, a number that is none.
-
-    Newton meets it by a smaller step. `what` is "J", "exponent" or "number", `value` what it was
-    there; `tet`, `region` and `point` [mm, undeformed] say where.
-    """
-
-    def __init__(
-        self,
-        message: str,
-        what: str,
-        value: float,
-        tet: int,
-        region: str,
-        point: tuple[float, float, float],
-    ) -> None:
-        super().__init__(message)
-        self.what, self.value = what, value
-        self.tet, self.region, self.point = tet, region, point
-
-
 class MissingExtra(BezSomaError, ImportError):
     """An optional package is not installed; the message has the line that installs it."""
 

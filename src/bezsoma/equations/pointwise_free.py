@@ -72,9 +72,7 @@ class PointwiseFree:
 
     def least_jacobian(self, u: Floats) -> tuple[float, int, int]:
         """The least J = det(I + H) of all points, with its tet and point; inf at small strain."""
-        self.kernel.forces(
-            np.ascontiguousarray(u, dtype=np.float64), np.empty((self.net.count, 3))
-        )
+        self.kernel.forces(np.ascontiguousarray(u, dtype=np.float64), np.empty((self.net.count, 3)))
         return self.kernel.least_jacobian
 
     def _refuse_inadmissible(self, f: Floats) -> None:
@@ -121,7 +119,5 @@ class Tangent:
     def apply(self, du: Floats) -> Floats:
         """The change of the forces (c, 3) N for a change du (c, 3) mm."""
         df = np.empty_like(self.u)
-        self.operator.kernel.tangent(
-            self.u, np.ascontiguousarray(du, dtype=np.float64), df
-        )
+        self.operator.kernel.tangent(self.u, np.ascontiguousarray(du, dtype=np.float64), df)
         return df
