@@ -116,6 +116,8 @@ class Entry:
             s[free] = x
             return s
 
+        if not free:
+            return whole([])
         found = root(lambda x: self.stresses(whole(x))[free], np.ones(len(free)), tol=1e-14)
         assert np.abs(found.fun).max() < 1e-12
         return whole(found.x)
