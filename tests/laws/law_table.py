@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from laws import plain_laws as plain
 from scipy.optimize import root
 
 import bezsoma as bz
 from bezsoma.mechanics.laws import FunctionLaw, Law
+from laws import plain_laws as plain
 
 Energy = Callable[[Any], Any]
 """W of the three principal stretches; along x, y and z."""
@@ -102,9 +102,7 @@ class Entry:
         """The principal stresses P_i = dW/ds_i, by a complex step."""
         if not self.energy:
             return self.principal(s)
-        return np.array(
-            [self.principal(s + 1e-30j * unit).imag / 1e-30 for unit in np.eye(3)]
-        )
+        return np.array([self.principal(s + 1e-30j * unit).imag / 1e-30 for unit in np.eye(3)])
 
     def stretches(self, given: dict[int, float]) -> Any:
         """The stretches with some given and no stress along the others."""
@@ -156,7 +154,10 @@ def _stiffening(measure: str) -> Callable[[], Law]:
 
 LAWS = {
     "st_venant_kirchhoff": Entry(
-        lambda: bz.StVenantKirchhoff(E, NU), plain.st_venant_kirchhoff(E, NU), _svk, _by_energy(_svk)
+        lambda: bz.StVenantKirchhoff(E, NU),
+        plain.st_venant_kirchhoff(E, NU),
+        _svk,
+        _by_energy(_svk),
     ),
     "neo_hooke": Entry(
         lambda: bz.NeoHooke(E, NU), plain.neo_hooke(E, NU), _neo_hooke, _by_energy(_neo_hooke)

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from bezsoma.mechanics.laws import FunctionLaw
 
 Array = npt.NDArray[Any]
-I = np.eye(3)  # noqa: E741 - as everybody writes it
+I = np.eye(3)
 
 
 def transposed(A: Array) -> Array:
@@ -154,9 +154,7 @@ def ogden(mu: Sequence[float], alpha: Sequence[float], kappa: float) -> Function
         F = I + H
         J = det(F)[..., 0]
         bars = np.sqrt(np.linalg.eigvalsh(transposed(F) @ F)) * J ** (-1 / 3)
-        shape = sum(
-            m / a * ((bars**a).sum(axis=-1) - 3) for m, a in zip(mu, alpha, strict=True)
-        )
+        shape = sum(m / a * ((bars**a).sum(axis=-1) - 3) for m, a in zip(mu, alpha, strict=True))
         return np.asarray(shape + kappa / 2 * (J[..., 0] - 1) ** 2)
 
     return FunctionLaw(stress, energy=energy, derivative="differences")

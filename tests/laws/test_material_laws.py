@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from laws.law_table import LAWS, NU, E
-from laws.plain_laws import dots, transposed
 from scipy.spatial.transform import Rotation
 
 import bezsoma as bz
 from bezsoma.mechanics.laws import Law, at_rest
+from laws.law_table import LAWS, NU, E
+from laws.plain_laws import dots, transposed
 from tolerances import CLOSED_FORM
 
 H = np.random.default_rng(1).uniform(-0.15, 0.15, (40, 3, 3))

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from laws.law_table import LAWS
 
 import bezsoma as bz
+from laws.law_table import LAWS
 
 HELD = [
     bz.Fixed(place, components=axis)
@@ -38,7 +38,9 @@ def stretched(law: object, stretches: dict[int, float], degree: int = 1) -> bz.S
 
 @WAYS
 @EVERY
-@pytest.mark.parametrize("given", [{2: 1.3}, {2: 0.75}, {1: 1.2, 2: 1.1}, {0: 1.15, 1: 0.9, 2: 1.2}])
+@pytest.mark.parametrize(
+    "given", [{2: 1.3}, {2: 0.75}, {1: 1.2, 2: 1.1}, {0: 1.15, 1: 0.9, 2: 1.2}]
+)
 def test_stretches_and_forces(name: str, way: str, given: dict[int, float]) -> None:
     entry = LAWS[name]
     s = entry.stretches(given)
@@ -67,7 +69,9 @@ def test_simple_shear(name: str, way: str) -> None:
     sides = ("left", "right", "front", "back", "bottom", "top")
     body = bz.Body(bz.block(), 2, law_of(name, way), [bz.Prescribed(*sides, value=value)])
     solution = bz.solve(body, solver="direct", rtol=1e-12)
-    stress = solution.body.material_of_region[0].stress(solution.displacement.gradient(np.full((1, 3), 0.4)))
+    stress = solution.body.material_of_region[0].stress(
+        solution.displacement.gradient(np.full((1, 3), 0.4))
+    )
     assert abs(stress[0, 0, 1] - LAWS[name].shear(0.4)) < CLOSED
 
 

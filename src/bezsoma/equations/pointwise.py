@@ -107,10 +107,10 @@ class Pointwise:
         for law, tets in self.runs():
             H = self.gradients(u, tets)
             if law.finite:
-                self._right_side_out(H, tets)
+                self.right_side_out(H, tets)
             with np.errstate(all="ignore"):
                 P = law.stress(H)
-            self._finite(P, tets)
+            self.all_finite(P, tets)
             self.add(f, tets, P)
         return f
 
@@ -133,13 +133,15 @@ class Pointwise:
                     least = (float(J.min()), int(tets[t]), int(q))
         return least
 
-    def _right_side_out(self, H: Floats, tets: Ints) -> None:
+    def right_side_out(self, H: Floats, tets: Ints) -> None:
+        """Raises Inadmissible where J <= 0."""
         J = np.linalg.det(np.eye(3) + H)
         bad = np.asarray(~(J > 0))
         if bad.any():
             raise self._failure("J", J, bad, tets)
 
-    def _finite(self, P: Floats, tets: Ints) -> None:
+    def all_finite(self, P: Floats, tets: Ints) -> None:
+        """Raises Inadmissible where a stress is no finite number."""
         bad = np.asarray(~np.isfinite(P).all(axis=(2, 3)))
         if bad.any():
             raise self._failure("number", np.where(bad, np.inf, 0.0), bad, tets)

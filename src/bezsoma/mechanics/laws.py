@@ -15,6 +15,7 @@ import numpy as np
 
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError
+from bezsoma.mechanics.compiled import bulk
 from bezsoma.mechanics.materials import Material
 
 Stress = Callable[[Floats], Floats]
@@ -48,6 +49,28 @@ class Law(Material, Protocol):
         ...
 
 
+@runtime_checkable
+class MixedLaw(Law, Protocol):
+    """A law that can go with a pressure of its own: P(H, p), and c(H, p), which has to vanish.
+
+    c = - (J - 1) - p / kappa at finite strain, - tr eps - p / kappa at small strain.
+    """
+
+    def mixed_stress(self, H: Floats, p: Floats) -> tuple[Floats, Floats]:
+        """P (..., 3, 3) MPa and c (...) at H (..., 3, 3) and p (...) MPa."""
+        ...
+
+    def mixed_derivative(
+        self, H: Floats, p: Floats, dH: Floats, dp: Floats
+    ) -> tuple[Floats, Floats]:
+        """Their changes in the direction dH, dp."""
+        ...
+
+    def mixed_energy(self, H: Floats, p: Floats) -> Floats:
+        """The stored energy (...) N/mm2: of the shape, and p^2 / (2 kappa)."""
+        ...
+
+
 @dataclass(frozen=True, init=False, eq=False)
 class FunctionLaw:
     """A law of your own: functions over arrays H (..., 3, 3); MPa.
@@ -61,6 +84,9 @@ class FunctionLaw:
     which Newton's last steps are not quadratic. `energy(H)`, if given, says that the stress is its
     derivative, so the tangent is symmetric.
 
+    With a `kappa` [MPa] the functions are those of the shape alone, and kappa/2 (J - 1)^2 is added
+    (kappa/2 tr^2 at small strain): then the law can also go with a pressure, kappa = inf allowed.
+
     >>> law = FunctionLaw(lambda H: H + H**3, finite=False)
     >>> H, dH = np.full((3, 3), 0.5), np.eye(3)
     >>> bool(np.allclose(law.derivative(H, dH), dH * (1 + 3 * H**2), rtol=1e-15))
@@ -71,6 +97,7 @@ class FunctionLaw:
     slope: Slope | str
     stored: Stress | None
     finite: bool = True
+    kappa: float | None = None
     linear: bool = field(default=False)
 
     def __init__(
@@ -80,6 +107,7 @@ class FunctionLaw:
         derivative: Slope | str = "complex step",
         energy: Stress | None = None,
         finite: bool = True,
+        kappa: float | None = None,
     ) -> None:
         if not callable(stress) or not (energy is None or callable(energy)):
             raise InputError(
@@ -95,6 +123,7 @@ class FunctionLaw:
         object.__setattr__(self, "slope", derivative)
         object.__setattr__(self, "stored", energy)
         object.__setattr__(self, "finite", bool(finite))
+        object.__setattr__(self, "kappa", None if kappa is None else bulk(kappa, "FunctionLaw"))
         object.__setattr__(self, "linear", False)
         _answers(self)
 
@@ -104,11 +133,59 @@ class FunctionLaw:
         return self.stored is not None
 
     def stress(self, H: Floats) -> Floats:
-        """What the function says, (..., 3, 3) MPa."""
-        return self.function(H)
+        """What the function says, (..., 3, 3) MPa, and the pressure of the volume."""
+        shape = self.function(H)
+        if self.kappa is None:
+            return shape
+        change, gradient = _volume(H, self.finite)
+        return np.asarray(shape + self.kappa * change[..., None, None] * gradient)
 
     def derivative(self, H: Floats, dH: Floats) -> Floats:
         """The change of the stress in the direction dH, (..., 3, 3) MPa."""
+        shape = self._shape_slope(H, dH)
+        if self.kappa is None:
+            return shape
+        change, gradient = _volume(H, self.finite)
+        along = np.einsum("...ij,...ij->...", gradient, dH)[..., None, None]
+        turned = change[..., None, None] * _volume_slope(H, dH, self.finite)
+        return np.asarray(shape + self.kappa * (along * gradient + turned))
+
+    def energy(self, H: Floats) -> Floats:
+        """The energy that was given and that of the volume, or stress : H, N/mm2."""
+        if self.stored is None:
+            return np.asarray(np.einsum("...ij,...ij->...", self.stress(H), H))
+        if self.kappa is None:
+            return self.stored(H)
+        return np.asarray(self.stored(H) + self.kappa / 2 * _volume(H, self.finite)[0] ** 2)
+
+    def mixed_stress(self, H: Floats, p: Floats) -> tuple[Floats, Floats]:
+        """P and c: see `MixedLaw`."""
+        change, gradient = _volume(H, self.finite)
+        return self.function(H) - p[..., None, None] * gradient, -change - p / self._kappa
+
+    def mixed_derivative(
+        self, H: Floats, p: Floats, dH: Floats, dp: Floats
+    ) -> tuple[Floats, Floats]:
+        """The changes of P and c: see `MixedLaw`."""
+        _, gradient = _volume(H, self.finite)
+        bent = _volume_slope(H, dH, self.finite)
+        dP = self._shape_slope(H, dH) - dp[..., None, None] * gradient - p[..., None, None] * bent
+        return dP, -np.einsum("...ij,...ij->...", gradient, dH) - dp / self._kappa
+
+    def mixed_energy(self, H: Floats, p: Floats) -> Floats:
+        """The energy of the shape, or its stress : H, and p^2 / (2 kappa), N/mm2."""
+        if self.stored is not None:
+            shape = self.stored(H)
+        else:
+            shape = np.einsum("...ij,...ij->...", self.function(H), H)
+        return np.asarray(shape + p**2 / (2 * self._kappa))
+
+    @property
+    def _kappa(self) -> float:
+        assert self.kappa is not None  # Body refuses a law without it beside a pressure
+        return self.kappa
+
+    def _shape_slope(self, H: Floats, dH: Floats) -> Floats:
         if callable(self.slope):
             return self.slope(H, dH)
         if self.slope == "complex step":
@@ -117,11 +194,30 @@ class FunctionLaw:
         h = DIFFERENCE / np.where(size > 0, size, 1.0)
         return np.asarray((self.function(H + h * dH) - self.function(H - h * dH)) / (2 * h))
 
-    def energy(self, H: Floats) -> Floats:
-        """The energy that was given, or stress : H, N/mm2."""
-        if self.stored is not None:
-            return self.stored(H)
-        return np.asarray(np.einsum("...ij,...ij->...", self.function(H), H))
+
+def _volume(H: Floats, finite: bool) -> tuple[Floats, Floats]:
+    """The change of volume J - 1, or tr eps, and its derivative by H."""
+    if not finite:
+        return np.trace(H, axis1=-2, axis2=-1), np.broadcast_to(np.eye(3), H.shape)
+    F = np.eye(3) + H
+    return np.linalg.det(F) - 1, _cofactor(F)
+
+
+def _volume_slope(H: Floats, dH: Floats, finite: bool) -> Floats:
+    """The change of that derivative in the direction dH."""
+    if not finite:
+        return np.zeros(np.broadcast_shapes(H.shape, dH.shape))
+    F, D = np.broadcast_arrays(np.eye(3) + H, dH)
+    columns = [np.cross(D[..., j], F[..., k]) + np.cross(F[..., j], D[..., k]) for j, k in _CYCLIC]
+    return np.stack(columns, axis=-1)
+
+
+_CYCLIC = ((1, 2), (2, 0), (0, 1))
+
+
+def _cofactor(F: Floats) -> Floats:
+    """J F^-T of F (..., 3, 3), the products of its columns."""
+    return np.stack([np.cross(F[..., j], F[..., k]) for j, k in _CYCLIC], axis=-1)
 
 
 @dataclass(frozen=True)
