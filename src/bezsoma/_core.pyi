@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The C++ kernels: flat arrays in C order; 0 threads means all cores."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -114,7 +114,7 @@ class Law:
     strain, - (J - 1) - p/kappa at finite strain.
     """
 
-    def __init__(self, name: str, parameters: Floats, instructions: str = "") -> None: ...
+    def __init__(self, name: str, parameters: Sequence[float], instructions: str = "") -> None: ...
     def stress(self, H: Floats) -> Floats: ...
     def derivative(self, H: Floats, dH: Floats) -> Floats: ...
     def energy(self, H: Floats) -> Floats: ...

@@ -8,8 +8,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <cmath>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,6 +23,8 @@
 #include "conjugate_gradients.hpp"
 #include "elastic_operator.hpp"
 #include "elasticity.hpp"
+#include "law.hpp"
+#include "pointwise_operator.hpp"
 #include "preconditioner.hpp"
 #include "simplex.hpp"
 #include "vertex_matrix.hpp"
@@ -335,6 +341,194 @@ private:
     std::unique_ptr<bezsoma::Aggregation> aggregation_;
 };
 
+// ------------------------------------------------------------------ laws at points
+
+const bezsoma::Kernels &kernels_of(const std::string &instructions) {
+    const bezsoma::Kernels *found = instructions.empty()
+                                        ? &bezsoma::best_kernels()
+                                        : bezsoma::kernels_named(instructions.c_str());
+    require(found != nullptr, "this processor or build lacks that instruction set");
+    return *found;
+}
+
+/// A law of the core by its name, asked at points.
+class LawAtPoints {
+public:
+    using Tensors = In<double, -1, 3, 3>;
+    using Numbers = In<double, -1>;
+
+    LawAtPoints(const std::string &name, std::vector<double> parameters,
+                const std::string &instructions)
+        : law_{bezsoma::law_numbered(name.c_str()), std::move(parameters)},
+          kernels_(kernels_of(instructions)) {
+        if (law_.number < 0)
+            throw nb::value_error(("no law '" + name + "'; see _core.law_names()").c_str());
+        const auto many = law_.parameters.size();
+        const auto asked = static_cast<std::size_t>(law_.name().parameters);
+        if (law_.name().is_sum ? many < asked || many % 2 == 0 : many != asked)
+            throw nb::value_error(("the law '" + name + "' has " + std::to_string(asked) +
+                                   " parameters, kappa first, not " + std::to_string(many))
+                                      .c_str());
+    }
+
+    auto stress(Tensors H) const { return tensors(bezsoma::Answer::stress, H, H); }
+    auto derivative(Tensors H, Tensors dH) const {
+        return tensors(bezsoma::Answer::derivative, H, dH);
+    }
+    auto energy(Tensors H) const { return energies(H, nullptr); }
+
+    auto mixed_stress(Tensors H, Numbers p) const {
+        return mixed(bezsoma::Answer::stress, H, p, H, p);
+    }
+    auto mixed_derivative(Tensors H, Numbers p, Tensors dH, Numbers dp) const {
+        return mixed(bezsoma::Answer::derivative, H, p, dH, dp);
+    }
+    auto mixed_energy(Tensors H, Numbers p) const {
+        require(p.shape(0) == H.shape(0), "H and p must have one row a point");
+        require_split();
+        return energies(H, p.data());
+    }
+
+    const bezsoma::Law &law() const { return law_; }
+    const bezsoma::LawKernel<double> &kernel() const {
+        return kernels_.pointwise->laws[law_.number];
+    }
+    bool splits() const { return kernel().mixed_stress != nullptr; }
+    void require_compressible() const {
+        require(std::isfinite(law_.parameters[0]),
+                "kappa = inf needs the mixed form: the displacement alone does not give the stress");
+    }
+    void require_split() const {
+        require(splits(), "this law has no mixed form: it does not split into shape and volume");
+    }
+
+private:
+    Out<double, -1, 3, 3> tensors(bezsoma::Answer which, const Tensors &H,
+                                  const Tensors &dH) const {
+        require_compressible();
+        require(dH.shape(0) == H.shape(0), "H and dH must have one row a point");
+        const std::size_t count = H.shape(0);
+        std::vector<double> P(9 * count);
+        check(bezsoma::answers(law_, kernels_, which, {count, H.data(), nullptr},
+                               {count, dH.data(), nullptr}, P.data(), nullptr));
+        return handed_over<double, -1, 3, 3>(std::move(P), {count, 3, 3});
+    }
+
+    nb::tuple mixed(bezsoma::Answer which, const Tensors &H, const Numbers &p, const Tensors &dH,
+                    const Numbers &dp) const {
+        const std::size_t count = H.shape(0);
+        require(p.shape(0) == count && dH.shape(0) == count && dp.shape(0) == count,
+                "H, p, dH and dp must have one row a point");
+        require_split();
+        std::vector<double> P(9 * count), c(count);
+        check(bezsoma::answers(law_, kernels_, which, {count, H.data(), p.data()},
+                               {count, dH.data(), dp.data()}, P.data(), c.data()));
+        return nb::make_tuple(handed_over<double, -1, 3, 3>(std::move(P), {count, 3, 3}),
+                              handed_over<double, -1>(std::move(c), {count}));
+    }
+
+    Out<double, -1> energies(const Tensors &H, const double *p) const {
+        require(kernel().has_energy, "this law has no energy");
+        if (!p)
+            require_compressible();
+        const std::size_t count = H.shape(0);
+        std::vector<double> W(count);
+        check(bezsoma::answers(law_, kernels_, bezsoma::Answer::energy, {count, H.data(), p},
+                               {count, H.data(), p}, W.data(), nullptr));
+        return handed_over<double, -1>(std::move(W), {count});
+    }
+
+    /// A law asked where it has no answer says so; numbers that are none never leave in silence.
+    static void check(const bezsoma::Extremes &seen) {
+        const auto &J = seen.least_J;
+        if (J.place >= 0 && !(J.value > 0))
+            throw nb::value_error(("J = " + std::to_string(J.value) + " in row " +
+                                   std::to_string(J.place) + ": a law holds for J > 0")
+                                      .c_str());
+        const auto &x = seen.greatest_exponent;
+        if (x.place >= 0 && !(x.value <= 700))
+            throw nb::value_error(("exp(" + std::to_string(x.value) + ") in row " +
+                                   std::to_string(x.place) + " leaves the range of numbers")
+                                      .c_str());
+    }
+
+    bezsoma::Law law_;
+    const bezsoma::Kernels &kernels_;
+};
+
+/// Forces and tangents of laws, one a region, and the threads that work on them.
+class Pointwise {
+public:
+    Pointwise(const Walk &walk, const std::vector<const LawAtPoints *> &laws,
+              In<double, -1, -1> values, In<double, -1> weights, std::size_t threads,
+              const std::string &instructions)
+        : team_(threads), kernels_(kernels_of(instructions)) {
+        const bezsoma::ElasticTets tets = walk.tets();
+        require(laws.size() == static_cast<std::size_t>(tets.regions), "one law a region");
+        require(values.shape(1) == bezsoma::count(tets.degree - 1) &&
+                    values.shape(0) == weights.shape(0) && weights.shape(0) > 0,
+                "values (points, controls of degree - 1) and weights (points,) must fit");
+        std::vector<bezsoma::Law> own;
+        for (const LawAtPoints *law : laws) {
+            law->require_compressible();
+            own.push_back(law->law());
+        }
+        team_.watch(listen_to_signals);
+        nb::gil_scoped_release released;
+        operator_ = std::make_unique<bezsoma::PointwiseOperator>(
+            tets, std::move(own), values.data(), weights.data(),
+            static_cast<std::int32_t>(weights.shape(0)), kernels_, team_);
+    }
+
+    void forces(In<double, -1, 3> u, Vectors f) {
+        fits(u.shape(0), f.shape(0));
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        operator_->forces(u.data(), f.data());
+    }
+
+    void tangent(In<double, -1, 3> u, In<double, -1, 3> du, Vectors df) {
+        fits(u.shape(0), df.shape(0));
+        fits(du.shape(0), df.shape(0));
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        operator_->tangent(u.data(), du.data(), df.data());
+    }
+
+    double energy(In<double, -1, 3> u) {
+        fits(u.shape(0), u.shape(0));
+        require(operator_->has_energy(), "a law of this body has no energy");
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        return operator_->energy(u.data());
+    }
+
+    nb::tuple least_jacobian() const { return told(operator_->seen().least_J, 1e30); }
+    nb::tuple greatest_exponent() const {
+        return told(operator_->seen().greatest_exponent, -1e30);
+    }
+    const char *instructions() const { return kernels_.name; }
+    std::size_t threads() const { return team_.size(); }
+
+private:
+    void fits(std::size_t x, std::size_t y) const {
+        require(static_cast<std::int64_t>(x) == operator_->controls() && y == x,
+                "displacements and forces must have one row a control");
+    }
+
+    static nb::tuple told(const bezsoma::Extreme &x, double nothing) {
+        const double value =
+            x.value == nothing ? std::copysign(std::numeric_limits<double>::infinity(), nothing)
+                               : x.value;
+        return nb::make_tuple(value, x.place, x.point);
+    }
+
+    std::mutex turn_;
+    bezsoma::Team team_;
+    const bezsoma::Kernels &kernels_;
+    std::unique_ptr<bezsoma::PointwiseOperator> operator_;
+};
+
 } // namespace
 
 NB_MODULE(_core, m) {
@@ -373,6 +567,37 @@ NB_MODULE(_core, m) {
         .def("apply", &Multigrid::apply, "r"_a, "z"_a)
         .def_prop_ro("levels", &Multigrid::levels)
         .def_prop_ro("bytes", &Multigrid::bytes);
+    nb::class_<LawAtPoints>(m, "Law")
+        .def(nb::init<const std::string &, std::vector<double>, const std::string &>(), "name"_a,
+             "parameters"_a, "instructions"_a = "")
+        .def("stress", &LawAtPoints::stress, "H"_a)
+        .def("derivative", &LawAtPoints::derivative, "H"_a, "dH"_a)
+        .def("energy", &LawAtPoints::energy, "H"_a)
+        .def("mixed_stress", &LawAtPoints::mixed_stress, "H"_a, "p"_a)
+        .def("mixed_derivative", &LawAtPoints::mixed_derivative, "H"_a, "p"_a, "dH"_a, "dp"_a)
+        .def("mixed_energy", &LawAtPoints::mixed_energy, "H"_a, "p"_a)
+        .def_prop_ro("name", [](const LawAtPoints &law) { return law.law().name().name; })
+        .def_prop_ro("parameters", [](const LawAtPoints &law) { return law.law().parameters; })
+        .def_prop_ro("finite", [](const LawAtPoints &law) { return law.kernel().finite; })
+        .def_prop_ro("has_energy", [](const LawAtPoints &law) { return law.kernel().has_energy; })
+        .def_prop_ro("splits", &LawAtPoints::splits);
+    m.def("law_names", [] {
+        std::vector<std::string> names;
+        for (const bezsoma::LawName &law : bezsoma::law_names)
+            names.emplace_back(law.name);
+        return names;
+    });
+    nb::class_<Pointwise>(m, "Pointwise")
+        .def(nb::init<const Walk &, const std::vector<const LawAtPoints *> &, In<double, -1, -1>,
+                      In<double, -1>, std::size_t, const std::string &>(),
+             "walk"_a, "laws"_a, "values"_a, "weights"_a, "threads"_a = 0, "instructions"_a = "")
+        .def("forces", &Pointwise::forces, "u"_a, "f"_a)
+        .def("tangent", &Pointwise::tangent, "u"_a, "du"_a, "df"_a)
+        .def("energy", &Pointwise::energy, "u"_a)
+        .def_prop_ro("least_jacobian", &Pointwise::least_jacobian)
+        .def_prop_ro("greatest_exponent", &Pointwise::greatest_exponent)
+        .def_prop_ro("instructions", &Pointwise::instructions)
+        .def_prop_ro("threads", &Pointwise::threads);
     m.def("instruction_sets", [] {
         std::vector<std::string> found;
         for (const char *name : {"avx512", "avx2", "baseline"})

@@ -60,12 +60,15 @@ template <class T> struct Kernel {
     double (*work)(const Batches<T> &); // sum over tets of int tau : eps
 };
 
+struct PointwiseKernels;
+
 struct Kernels {
     const char *name;
     int lanes64, lanes32;
     Kernel<double> f64[10]; // by degree - 1
     Kernel<float> f32[10];
     BlockKernel blocks[10][4]; // by degree - 1 and dimension; empty where no control is inside
+    const PointwiseKernels *pointwise;
 };
 
 /// The widest instruction set that this processor has; or the one named.

@@ -96,6 +96,7 @@ template <int n, int dim> static constexpr BlockKernel block_kernel() {
 #define BEZSOMA_TEXT_OF(name) #name
 #define BEZSOMA_TEXT(name) BEZSOMA_TEXT_OF(name)
 
+extern const PointwiseKernels pointwise_kernels;
 extern const Kernels kernels;
 constinit const Kernels kernels = {BEZSOMA_TEXT(BEZSOMA_ISA),
                                    lanes64,
@@ -105,6 +106,7 @@ constinit const Kernels kernels = {BEZSOMA_TEXT(BEZSOMA_ISA),
                                    {BEZSOMA_BLOCKS(1), BEZSOMA_BLOCKS(2), BEZSOMA_BLOCKS(3),
                                     BEZSOMA_BLOCKS(4), BEZSOMA_BLOCKS(5), BEZSOMA_BLOCKS(6),
                                     BEZSOMA_BLOCKS(7), BEZSOMA_BLOCKS(8), BEZSOMA_BLOCKS(9),
-                                    BEZSOMA_BLOCKS(10)}};
+                                    BEZSOMA_BLOCKS(10)},
+                                   &pointwise_kernels};
 
 } // namespace bezsoma::BEZSOMA_ISA

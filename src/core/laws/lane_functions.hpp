@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// exp, log and their like on lanes: no library call, the same in every lane, to the last digits.
+#pragma once
+
+#include "../elastic_kernel.hpp"
+
+namespace bezsoma::BEZSOMA_ISA {
+
+/// The number of which R holds several, and integers of the same size.
+template <class T> struct Value;
+template <class T> struct Value<T &> {
+    using Type = T;
+};
+template <class R> struct Element {
+    R lanes;
+    using Type = typename Value<decltype((lanes[0]))>::Type;
+};
+template <class R> using Scalar = typename Element<R>::Type;
+template <class T> struct Integers;
+template <> struct Integers<double> {
+    typedef long long Int;
+    static constexpr int mantissa = 52;
+    static constexpr double magic = 6755399441055744.0; // 1.5 2^52: adding it rounds to integers
+    static constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770e-10;
+    static constexpr double least = -708, greatest = 709;
+    static constexpr int exp_terms = 13, log_terms = 10;
+};
+template <> struct Integers<float> {
+    typedef int Int;
+    static constexpr int mantissa = 23;
+    static constexpr float magic = 12582912.0f;
+    static constexpr float ln2_high = 0.693359375f, ln2_low = -2.12194440e-4f;
+    static constexpr float least = -87, greatest = 88;
+    static constexpr int exp_terms = 7, log_terms = 5;
+};
+
+template <class R> struct Bits {
+    using T = Scalar<R>;
+    typedef typename Integers<T>::Int Int __attribute__((vector_size(sizeof(R))));
+};
+
+static constexpr double inverse_factorial(int n) {
+    double f = 1;
+    for (int i = 2; i <= n; ++i)
+        f /= i;
+    return f;
+}
+
+/// sum_{i = first}^{last} x^(i - first) / i!
+template <int first, int last, class R> BEZSOMA_INLINE R exponential_tail(const R &x) {
+    constexpr auto here = static_cast<Scalar<R>>(inverse_factorial(first));
+    if constexpr (first == last)
+        return R{} + here;
+    else
+        return exponential_tail<first + 1, last>(x) * x + here;
+}
+
+/// exp(x) = 2^k (1 + tail) with |tail| < 0.42: the parts of which exp and exp - 1 are made.
+template <class R> struct Exponential {
+    R power, tail;
+};
+
+template <class R> BEZSOMA_INLINE Exponential<R> exponential(R x) {
+    using I = Integers<Scalar<R>>;
+    using Int = typename Bits<R>::Int;
+    x = x < I::least ? R{} + I::least : x;
+    x = x > I::greatest ? R{} + I::greatest : x;
+    const R shifted = x * static_cast<Scalar<R>>(1.44269504088896340736) + I::magic;
+    const R k = shifted - I::magic;
+    const R r = (x - k * I::ln2_high) - k * I::ln2_low;
+    const R one = R{} + 1;
+    // The low bits of `shifted` are k; above them stands what the shift drops.
+    const Int power = (Int)one + ((Int)shifted << I::mantissa);
+    return {(R)power, r * exponential_tail<1, I::exp_terms>(r)};
+}
+
+/// exp(x); beyond the range of numbers what it is at its end.
+template <class R> BEZSOMA_INLINE R exp(const R &x) {
+    const Exponential<R> e = exponential(x);
+    return e.power + e.power * e.tail;
+}
+
+/// exp(x) - 1 without loss near zero.
+template <class R> BEZSOMA_INLINE R expm1(const R &x) {
+    const Exponential<R> e = exponential(x);
+    return e.power * e.tail + (e.power - 1);
+}
+
+/// (exp(x) - 1) / x, 1 at zero.
+template <class R> BEZSOMA_INLINE R expm1_quotient(const R &x) {
+    const R small = x * x < static_cast<Scalar<R>>(1e-40) ? R{} + 1 : x;
+    const R found = expm1(small) / small;
+    return x * x < static_cast<Scalar<R>>(1e-40) ? R{} + 1 : found;
+}
+
+/// 2 (s + s^3/3 + s^5/5 ...): the logarithm of (1 + s) / (1 - s).
+template <int i, int terms, class R> BEZSOMA_INLINE R log_tail(const R &ss) {
+    constexpr auto here = static_cast<Scalar<R>>(2.0 / (2 * i + 1));
+    if constexpr (i == terms)
+        return R{} + here;
+    else
+        return log_tail<i + 1, terms>(ss) * ss + here;
+}
+
+/// log(1 + x) without loss near zero, for x > -1; for others a number without meaning.
+template <class R> BEZSOMA_INLINE R log1p(const R &x) {
+    using I = Integers<Scalar<R>>;
+    using Int = typename Bits<R>::Int;
+    const R one = R{} + 1, u = one + x, half = R{} + static_cast<Scalar<R>>(0.70710678118654752440);
+    // u = 2^k m with m from sqrt(1/2) to sqrt(2); shifted right arithmetically.
+    const Int k = ((Int)u - (Int)half) >> I::mantissa;
+    const R m = (R)((Int)u - (k << I::mantissa));
+    const R magic = R{} + I::magic;
+    const R exponent = (R)((Int)magic + k) - magic;
+    const R above = k == 0 ? x : m - 1;
+    const R s = above / (above + 2);
+    return s * log_tail<0, I::log_terms>(s * s) + exponent * I::ln2_low + exponent * I::ln2_high;
+}
+
+/// Square roots of x >= 0, lane by lane: the compiler has an instruction for it.
+template <class R> BEZSOMA_INLINE R sqrt(const R &x) {
+    R root;
+    for (unsigned l = 0; l < sizeof(R) / sizeof(x[0]); ++l)
+        root[l] = sizeof(x[0]) == 8 ? __builtin_sqrt(x[l]) : __builtin_sqrtf(x[l]);
+    return root;
+}
+
+template <class R> BEZSOMA_INLINE R abs(const R &x) { return x < 0 ? -x : x; }
+template <class R> BEZSOMA_INLINE R greater(const R &x, const R &y) { return x > y ? x : y; }
+
+} // namespace bezsoma::BEZSOMA_ISA

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What all laws need of a displacement gradient, for lanes or for dual numbers. Everything is
+// formed from H, never from F = I + H and its like minus I: at rest nothing is left to cancel.
+#pragma once
+
+#include "dual.hpp"
+
+namespace bezsoma::BEZSOMA_ISA {
+
+/// What a law shall keep an eye on while it runs over the points of a batch.
+template <class R> struct Watch {
+    R least_J = R{} + static_cast<Scalar<R>>(1e30), least_at = R{};
+    R greatest_exponent = R{} - static_cast<Scalar<R>>(1e30), greatest_at = R{};
+    R point = R{}; // where it is now
+
+    BEZSOMA_INLINE void jacobian(const R &J) { // written so that what is no number is seen
+        least_at = J > least_J ? least_at : point;
+        least_J = J > least_J ? least_J : J;
+    }
+    BEZSOMA_INLINE void exponent(const R &x) {
+        greatest_at = x < greatest_exponent ? greatest_at : point;
+        greatest_exponent = x < greatest_exponent ? greatest_exponent : x;
+    }
+};
+
+/// exp(x), watched.
+template <class S, class R> BEZSOMA_INLINE S watched_exp(const S &x, Watch<R> &watch) {
+    watch.exponent(value(x));
+    return exp(x);
+}
+
+/// F = I + H at finite strain. H row after row: H_kl = du_k/dx_l.
+template <class S> struct Motion {
+    S H[3][3];
+    S cof[3][3]; // J F^-T
+    S N[3][3];   // J (F - F^-T)
+    S j;         // J - 1
+    S trace;     // tr E, E = (H + H^T + H^T H) / 2
+
+    template <class R> BEZSOMA_INLINE Motion(const S *gradient, Watch<R> &watch) {
+        for (int k = 0; k < 9; ++k)
+            H[k / 3][k % 3] = gradient[k];
+        const S tr = H[0][0] + H[1][1] + H[2][2];
+        S minor[3][3]; // cof H
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l) {
+                const int a = (k + 1) % 3, b = (k + 2) % 3, c = (l + 1) % 3, d = (l + 2) % 3;
+                minor[k][l] = H[a][c] * H[b][d] - H[a][d] * H[b][c];
+            }
+        // J = 1 + tr H + tr cof H + det H
+        const S second = minor[0][0] + minor[1][1] + minor[2][2];
+        const S higher = second + H[0][0] * minor[0][0] + H[0][1] * minor[0][1] +
+                         H[0][2] * minor[0][2];
+        j = tr + higher;
+        S square = H[0][0] * H[0][0];
+        for (int k = 1; k < 9; ++k)
+            square += H[k / 3][k % 3] * H[k / 3][k % 3];
+        trace = tr + square * half();
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l) {
+                cof[k][l] = minor[k][l] - H[l][k];
+                N[k][l] = (H[k][l] + H[l][k]) + (j * H[k][l] - minor[k][l]);
+                if (k == l) {
+                    cof[k][l] = cof[k][l] + (tr + Plain<S>(1));
+                    N[k][l] += higher;
+                }
+            }
+        watch.jacobian(value(j) + 1);
+    }
+
+    static constexpr Plain<S> half() { return Plain<S>(0.5); }
+
+    /// Green's strain E, 2 E_kl for k != l not doubled: XX YY ZZ XY YZ ZX.
+    BEZSOMA_INLINE void green(S (&E)[6]) const {
+        for (int c = 0; c < 6; ++c) {
+            const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
+            E[c] = (H[k][l] + H[l][k] + H[0][k] * H[0][l] + H[1][k] * H[1][l] +
+                    H[2][k] * H[2][l]) *
+                   half();
+        }
+    }
+
+    /// P = F S for a symmetric S: XX YY ZZ XY YZ ZX.
+    BEZSOMA_INLINE void pushed(const S (&s)[6], S *P) const {
+        constexpr int of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l)
+                P[3 * k + l] = s[of[k][l]] + H[k][0] * s[of[0][l]] + H[k][1] * s[of[1][l]] +
+                               H[k][2] * s[of[2][l]];
+    }
+};
+
+/// I2(E) = ((tr E)^2 - E:E) / 2.
+template <class S> BEZSOMA_INLINE S second_invariant(const S (&E)[6]) {
+    return E[0] * E[1] + E[1] * E[2] + E[2] * E[0] -
+           (E[3] * E[3] + E[4] * E[4] + E[5] * E[5]);
+}
+
+/// (1 + j)^e, and its change from d = e (1 + j)^e / (1 + j).
+template <class S> BEZSOMA_INLINE S power_of_J(const S &j, double e) {
+    return exp(log1p(j) * Plain<S>(e));
+}
+
+} // namespace bezsoma::BEZSOMA_ISA
