@@ -46,3 +46,7 @@ ENERGY_NORM = 1e-7
 HARD = 1e-5
 """Multigrid to 1e-8 against the direct solver in the energy norm, relative, on the hardest bodies:
 contrasts of 1e4 and flat tets stand between a small residual and a small error."""
+
+MIXED_TWIN = 1e-8
+"""Displacement, pressure and energy of the mixed form by another code, both solved to 1e-12: the
+matrix is indefinite, and nu = 0.4999 beside a stiffness contrast of 100 costs digits."""

@@ -75,6 +75,23 @@ class MatrixFree:
     @property
     def threads(self) -> int: ...
 
+class MixedFree:
+    def __init__(
+        self,
+        walk: Walk,
+        pressure_degree: int,
+        first: Int32s,
+        threads: int = 0,
+        instructions: str = "",
+    ) -> None: ...
+    def apply(self, u: Floats, p: Floats, f: Floats, g: Floats) -> None: ...
+    def work(self, u: Floats, p: Floats) -> float: ...
+    def mass(self, weight: Floats, p: Floats, g: Floats) -> None: ...
+    @property
+    def instructions(self) -> str: ...
+    @property
+    def threads(self) -> int: ...
+
 class Multigrid:
     def __init__(
         self,

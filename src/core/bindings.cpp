@@ -25,6 +25,7 @@
 #include "elasticity.hpp"
 #include "law.hpp"
 #include "pointwise_operator.hpp"
+#include "mixed_operator.hpp"
 #include "preconditioner.hpp"
 #include "simplex.hpp"
 #include "vertex_matrix.hpp"
@@ -38,6 +39,7 @@ using In = nb::ndarray<const T, nb::shape<shape...>, nb::c_contig, nb::device::c
 template <typename T, long... shape>
 using Out = nb::ndarray<nb::numpy, T, nb::shape<shape...>, nb::c_contig, nb::device::cpu>;
 using Vectors = nb::ndarray<double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Scalars = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 /// A NumPy array that owns the vector.
 template <typename T, long... shape>
@@ -267,6 +269,86 @@ private:
     const bezsoma::Kernels *kernels_;
     std::unique_ptr<bezsoma::ElasticOperator<double>> double_;
     std::unique_ptr<bezsoma::ElasticOperator<float>> single_;
+};
+
+/// The displacement-pressure form of one body: as MatrixFree. The walk's moduli are G and 1/kappa.
+class MixedFree {
+public:
+    MixedFree(const Walk &walk, int pressure_degree, In<std::int32_t, -1, -1> first,
+              std::size_t threads, const std::string &instructions)
+        : team_(threads),
+          kernels_(instructions.empty() ? &bezsoma::best_kernels()
+                                        : bezsoma::kernels_named(instructions.c_str())) {
+        require(kernels_ != nullptr, "this processor or build lacks that instruction set");
+        const bezsoma::ElasticTets tets = walk.tets();
+        require(tets.degree <= bezsoma::highest_mixed_degree && pressure_degree >= 1 &&
+                    pressure_degree < tets.degree,
+                "degrees must be 2 to 8 beside a pressure of a lower one, 1 at least");
+        require(first.shape(0) == walk.first.shape(0) &&
+                    first.shape(1) ==
+                        static_cast<std::size_t>(bezsoma::entities_of_tet(pressure_degree)),
+                "the pressure's first must have a row a tet and a column for each entity");
+        require(numbered_by_walk(pressure_degree, first),
+                "the pressure must be numbered as the walk over the tets first touches it");
+        team_.watch(listen_to_signals);
+        nb::gil_scoped_release released;
+        operator_ = std::make_unique<bezsoma::MixedOperator>(
+            bezsoma::MixedTets{tets, pressure_degree, first.data()}, *kernels_, team_);
+    }
+
+    void apply(In<double, -1, 3> u, In<double, -1> p, Vectors f, Scalars g) {
+        require(fits(u, p) && fits(f, g), "u, f and p, g must have one row a control");
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        operator_->apply(u.data(), p.data(), f.data(), g.data());
+    }
+
+    double work(In<double, -1, 3> u, In<double, -1> p) {
+        require(fits(u, p), "u and p must have one row a control");
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        return operator_->work(u.data(), p.data());
+    }
+
+    void mass(In<double, -1> weight, In<double, -1> p, Scalars g) {
+        require(static_cast<std::int64_t>(weight.size()) == operator_->regions() &&
+                    static_cast<std::int64_t>(p.size()) == operator_->pressures() &&
+                    g.size() == p.size(),
+                "weight, p and g must fit the regions and the pressure's controls");
+        const std::vector<double> weights(weight.data(), weight.data() + weight.size());
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        operator_->mass(weights, p.data(), g.data());
+    }
+
+    bezsoma::MixedOperator &form() { return *operator_; }
+    bezsoma::Team &team() { return team_; }
+    std::mutex &turn() { return turn_; }
+    const bezsoma::Kernels &kernels() const { return *kernels_; }
+
+    template <class U, class P> bool fits(const U &u, const P &p) const {
+        return static_cast<std::int64_t>(u.shape(0)) == operator_->controls() &&
+               static_cast<std::int64_t>(p.shape(0)) == operator_->pressures();
+    }
+
+private:
+    static bool numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
+        std::int32_t next = 0;
+        const std::size_t per_tet = first.shape(1);
+        for (std::size_t i = 0; i < first.size(); ++i) {
+            const std::int32_t run = first.data()[i];
+            if (run < 0 || run > next)
+                return false;
+            if (run == next)
+                next += bezsoma::controls_inside(degree, static_cast<int>(i % per_tet));
+        }
+        return true;
+    }
+
+    std::mutex turn_;
+    bezsoma::Team team_;
+    const bezsoma::Kernels *kernels_;
+    std::unique_ptr<bezsoma::MixedOperator> operator_;
 };
 
 /// The preconditioner of a body with its supports, and the iteration that it serves.
@@ -557,6 +639,15 @@ NB_MODULE(_core, m) {
         .def("apply_single", &MatrixFree::apply_single, "x"_a, "y"_a)
         .def_prop_ro("instructions", [](const MatrixFree &k) { return k.kernels().name; })
         .def_prop_ro("threads", [](MatrixFree &k) { return k.team().size(); });
+    nb::class_<MixedFree>(m, "MixedFree")
+        .def(nb::init<const Walk &, int, In<std::int32_t, -1, -1>, std::size_t,
+                      const std::string &>(),
+             "walk"_a, "pressure_degree"_a, "first"_a, "threads"_a = 0, "instructions"_a = "")
+        .def("apply", &MixedFree::apply, "u"_a, "p"_a, "f"_a, "g"_a)
+        .def("work", &MixedFree::work, "u"_a, "p"_a)
+        .def("mass", &MixedFree::mass, "weight"_a, "p"_a, "g"_a)
+        .def_prop_ro("instructions", [](const MixedFree &k) { return k.kernels().name; })
+        .def_prop_ro("threads", [](MixedFree &k) { return k.team().size(); });
     nb::class_<Multigrid>(m, "Multigrid")
         .def(nb::init<MatrixFree &, const Walk &, In<std::int32_t, -1, 4>, In<double, -1, 3>,
                       In<bool, -1, 3>, In<bool, -1, 3>>(),

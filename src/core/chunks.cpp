@@ -85,12 +85,18 @@ Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int
     const std::int64_t per_tet = std::max(1, degree * degree * degree / 6);
     const std::int64_t most = std::max<std::int64_t>(64, target / per_tet);
     const std::int64_t number = (tets + most - 1) / most;
+    std::vector<std::int64_t> at;
+    for (std::int64_t i = 0; i <= number; ++i)
+        at.push_back(tets * i / number);
+    return chunks(degree, first, at);
+}
+
+Chunks chunks(int degree, const std::int32_t *first, const std::vector<std::int64_t> &cuts) {
     Chunks all{degree, 0, 0, {}, {}, 0};
-    all.local.resize(static_cast<std::size_t>(tets * entities_of_tet(degree)));
+    all.local.resize(static_cast<std::size_t>(cuts.back() * entities_of_tet(degree)));
     std::int32_t control = 0;
-    for (std::int64_t i = 0; i < number; ++i) {
-        const std::int64_t tet = tets * i / number, after = tets * (i + 1) / number;
-        Chunk chunk{tet, after - tet, control, 0, all.foreign, 0, {}, {}};
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        Chunk chunk{cuts[i], cuts[i + 1] - cuts[i], control, 0, all.foreign, 0, {}, {}};
         control = end_of_owned(all, first, chunk);
         chunk.owned = control - chunk.control;
         chunk.runs = foreign_runs(all, first, chunk);
@@ -104,6 +110,13 @@ Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int
     all.controls = control;
     hand_to_owners(all);
     return all;
+}
+
+std::vector<std::int64_t> cuts(const Chunks &chunks) {
+    std::vector<std::int64_t> at{0};
+    for (const Chunk &chunk : chunks.parts)
+        at.push_back(chunk.tet + chunk.tets);
+    return at;
 }
 
 } // namespace bezsoma

@@ -55,4 +55,11 @@ struct Chunks {
 /// walk that numbered them.
 Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target);
 
+/// The same walk cut where it is told: chunk i holds tets [cuts[i], cuts[i + 1]). So fields of
+/// several degrees share their chunks.
+Chunks chunks(int degree, const std::int32_t *first, const std::vector<std::int64_t> &cuts);
+
+/// Where a walk was cut.
+std::vector<std::int64_t> cuts(const Chunks &chunks);
+
 } // namespace bezsoma

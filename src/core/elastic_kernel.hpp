@@ -319,14 +319,13 @@ BEZSOMA_INLINE void stress_moments(const Batch<T, lanes> &tet, const Lanes<T, la
         ladder<m, m, T, lanes>(stress[c]);
 }
 
-/// f[a] = K u[a] on every lane's tet: both by position, three components each.
+/// f[a] by position, three components each, from what `stress_moments` gives.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
-                                   Lanes<T, lanes> *f) {
+BEZSOMA_INLINE void forces_of_moments(const Batch<T, lanes> &tet,
+                                      const Lanes<T, lanes> (&stress)[6][controls(n - 1)],
+                                      Lanes<T, lanes> *f) {
     using R = Lanes<T, lanes>;
     constexpr int m = n - 1;
-    R stress[6][controls(m)];
-    stress_moments<n, T, lanes>(tet, u, stress);
 #pragma GCC unroll 32
     for (int row = 0; row < 3 * controls(n); ++row)
         f[row] = R{};
@@ -347,6 +346,15 @@ BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, la
             f[3 * p3 + k] += f3;
         }
     });
+}
+
+/// f[a] = K u[a] on every lane's tet: both by position, three components each.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
+                                   Lanes<T, lanes> *f) {
+    Lanes<T, lanes> stress[6][controls(n - 1)];
+    stress_moments<n, T, lanes>(tet, u, stress);
+    forces_of_moments<n, T, lanes>(tet, stress, f);
 }
 
 /// int tau : eps on every lane's tet. From gradients, not from u . f, so that a body that is

@@ -16,11 +16,12 @@ constexpr std::size_t padding = 16; // numbers that a gather may read past the e
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
-std::int64_t expected_controls(const ElasticTets &tets) {
-    return tets.tets * tets.degree * tets.degree * tets.degree / 6;
-}
-
 } // namespace
+
+std::int64_t controls_of_chunk(const ElasticTets &tets) {
+    const std::int64_t expected = tets.tets * tets.degree * tets.degree * tets.degree / 6;
+    return std::clamp(expected / shares, least_controls, most_controls);
+}
 
 TetShape ElasticTets::shape(std::int64_t i) const {
     const std::int64_t *at = corners + 4 * order[i];
@@ -47,9 +48,7 @@ TetShape ElasticTets::shape(std::int64_t i) const {
 
 template <class T>
 ElasticOperator<T>::ElasticOperator(const ElasticTets &tets, const Kernels &kernels, Team &team)
-    : team_(team), chunks_(bezsoma::chunks(tets.degree, tets.first, tets.tets,
-                                           std::clamp(expected_controls(tets) / shares,
-                                                      least_controls, most_controls))),
+    : team_(team), chunks_(bezsoma::chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets))),
       lame_(tets.lame, tets.lame + 2 * tets.regions), scratch_(team.size()) {
     if constexpr (sizeof(T) == 8) {
         kernel_ = kernels.f64[tets.degree - 1];

@@ -39,6 +39,9 @@ struct ElasticTets {
     double mu(std::int64_t i) const { return lame[2 * region(i) + 1]; }
 };
 
+/// The controls that a chunk of the walk should have.
+std::int64_t controls_of_chunk(const ElasticTets &tets);
+
 /// K u without a matrix, in float64 or float32, on one or several right-hand sides.
 ///
 /// Per tet it keeps 9 numbers of geometry, 4 to 15 of where its controls lie and its region.

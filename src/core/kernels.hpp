@@ -61,6 +61,7 @@ template <class T> struct Kernel {
 };
 
 struct PointwiseKernels;
+struct MixedKernels;
 
 struct Kernels {
     const char *name;
@@ -69,6 +70,7 @@ struct Kernels {
     Kernel<float> f32[10];
     BlockKernel blocks[10][4]; // by degree - 1 and dimension; empty where no control is inside
     const PointwiseKernels *pointwise;
+    const MixedKernels *mixed;
 };
 
 /// The widest instruction set that this processor has; or the one named.

@@ -97,6 +97,7 @@ template <int n, int dim> static constexpr BlockKernel block_kernel() {
 #define BEZSOMA_TEXT(name) BEZSOMA_TEXT_OF(name)
 
 extern const PointwiseKernels pointwise_kernels;
+extern const MixedKernels mixed_kernels;
 extern const Kernels kernels;
 constinit const Kernels kernels = {BEZSOMA_TEXT(BEZSOMA_ISA),
                                    lanes64,
@@ -107,6 +108,7 @@ constinit const Kernels kernels = {BEZSOMA_TEXT(BEZSOMA_ISA),
                                     BEZSOMA_BLOCKS(4), BEZSOMA_BLOCKS(5), BEZSOMA_BLOCKS(6),
                                     BEZSOMA_BLOCKS(7), BEZSOMA_BLOCKS(8), BEZSOMA_BLOCKS(9),
                                     BEZSOMA_BLOCKS(10)},
-                                   &pointwise_kernels};
+                                   &pointwise_kernels,
+                                   &mixed_kernels};
 
 } // namespace bezsoma::BEZSOMA_ISA

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bezsoma import _core
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Floats, Ints
 from bezsoma.mesh.control_net import ControlNet
 
 
@@ -60,20 +60,7 @@ class MatrixFree:
 
         lambda and mu are divided by `unit`.
         """
-        net, mesh = self.net, self.net.mesh
-        first = [
-            net.starts[dim][entities[net.morton]].astype(np.int32)
-            for dim, entities in enumerate(net.entities_of_tet())
-        ]
-        return _core.Walk(
-            net.degree,
-            np.concatenate(first, axis=1),
-            net.morton,
-            mesh.points,
-            mesh.tets,
-            mesh.region,
-            np.ascontiguousarray(self.lame / unit),
-        )
+        return walk(self.net, self.lame / unit)
 
     def __matmul__(self, x: Floats) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N."""
@@ -96,3 +83,27 @@ class MatrixFree:
         are large and strains small, and in x . K x large terms would cancel.
         """
         return self.kernel.work(np.ascontiguousarray(x)) / 2
+
+
+def walk(net: ControlNet, moduli: Floats) -> _core.Walk:
+    """The tets in the order in which they numbered the controls, as the core takes them.
+
+    moduli (regions, 2): lambda and mu, or what the taker reads there.
+    """
+    mesh = net.mesh
+    return _core.Walk(
+        net.degree,
+        first_controls(net, net.morton),
+        net.morton,
+        mesh.points,
+        mesh.tets,
+        mesh.region,
+        np.ascontiguousarray(moduli, dtype=np.float64),
+    )
+
+
+def first_controls(net: ControlNet, order: Ints) -> npt.NDArray[np.int32]:
+    """The first control of each entity that holds any (t, 4 to 15), tets in the given order."""
+    runs = zip(net.starts, net.entities_of_tet(), strict=True)
+    first = [starts[entities[order]].astype(np.int32) for starts, entities in runs]
+    return np.concatenate(first, axis=1)

@@ -5,28 +5,24 @@ from __future__ import annotations
 
 import numpy as np
 
-from bezsoma import bernstein
 from bezsoma.arrays import Floats, frozen
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.forces import forces
 from bezsoma.equations.level import refuse_flux, undetermined, without_mean
 from bezsoma.equations.locked import refuse_undetermined
-from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.mixed import (
     MixedEquations,
     MixedMatrix,
-    MixedOperator,
-    deviatoric_lame,
     mixed_matrix,
     mixed_moduli,
 )
+from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.equations.rigid import refuse_rigid_motions
 from bezsoma.equations.stress import volume_change
 from bezsoma.errors import InputError, NotConverged
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
-from bezsoma.mesh.evaluation import mass_product
 from bezsoma.mesh.field import Field
 from bezsoma.mesh.torn import pressure_net
 from bezsoma.solvers.krylov import Report
@@ -47,7 +43,7 @@ def mixed_solution(body: Body, solver: str, rtol: float, threads: int, watch: Wa
     with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
         displacement = Field(equations.net, frozen(u))
         pressure = _pressure(body, equations.pressure_net, frozen(p))
-        energy = _energy(body, displacement, pressure, threads)
+        energy = _without_matrix(equations, body, threads).energy(u, p)
         swelling = volume_change(displacement)
         pull = -equations.residuals(u, p)[0]
         supports = resultants(equations.net, equations.of_support, pull)
@@ -102,20 +98,18 @@ def _equations(
     with watch.stage("loads", f"{len(body.loads)} given"):
         loads = forces(body, net)
     with watch.stage("stiffness", f"{free} unknowns"):
-        operator = _operator(chosen, net, pressures, moduli, threads)
+        given = (net, pressures, moduli, threads)
+        operator = mixed_matrix(*given) if chosen == "direct" else MixedFree(*given)
     supports = (known.mask, known.values, known.of_support)
     equations = MixedEquations(net, pressures, operator, loads, *supports, modes)
     return chosen, why, equations, locked
 
 
-def _operator(
-    chosen: str, net: ControlNet, pressures: ControlNet, moduli: Floats, threads: int
-) -> MixedOperator:
-    if chosen == "direct":
-        return mixed_matrix(net, pressures, moduli, threads)
-    from bezsoma.equations.mixed_free import MixedFree
-
-    return MixedFree(net, pressures, moduli, threads)
+def _without_matrix(equations: MixedEquations, body: Body, threads: int) -> MixedFree:
+    """The operator that takes the energy from gradients."""
+    if isinstance(equations.operator, MixedFree):
+        return equations.operator
+    return MixedFree(equations.net, equations.pressure_net, mixed_moduli(body), threads)
 
 
 def _solved(
@@ -141,7 +135,6 @@ def _solved(
 def _iterated(
     equations: MixedEquations, f: Floats, g: Floats, why: str, rtol: float, report: Report
 ) -> tuple[Floats, Floats, str, list[float]]:
-    from bezsoma.equations.mixed_free import MixedFree
     from bezsoma.solvers.saddle import saddle
 
     assert isinstance(equations.operator, MixedFree)
@@ -166,15 +159,6 @@ def _pressure(body: Body, net: ControlNet, p: Floats) -> Field | BrokenField:
     if net.mesh is body.mesh:
         return Field(net, p)
     return BrokenField(body.mesh, net.degree, frozen(p[net.of_tet]))
-
-
-def _energy(body: Body, displacement: Field, pressure: Field | BrokenField, threads: int) -> float:
-    """The stored energy int G eps' : eps' + p^2 / (2 kappa) [N mm]."""
-    moduli = mixed_moduli(body)
-    shear = MatrixFree(displacement.net, deviatoric_lame(moduli), threads)
-    softness = body.mesh.volumes * moduli[body.mesh.region, 1]
-    mass = bernstein.mass(pressure.degree, pressure.degree, 3)
-    return shear.energy(displacement.controls) + mass_product(mass, pressure.of_tet, softness) / 2
 
 
 def mixed_choice(free: int, solver: str) -> tuple[str, str]:
