@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from bezsoma import _core, bernstein
 from bezsoma.equations.pointwise import Internal, Pointwise
 from bezsoma.equations.pointwise_free import PointwiseFree
@@ -18,7 +16,7 @@ from bezsoma.mesh.control_net import ControlNet
 def core_law(law: Law) -> _core.Law | None:
     """The core's law, or None for a law that is a function in Python."""
     if isinstance(law, LinearElastic):
-        return _core.Law("linear", np.array([law.kappa, law.mu]))
+        return _core.Law("linear", [law.kappa, law.mu])
     found = getattr(law, "core", None)
     return found if isinstance(found, _core.Law) else None
 

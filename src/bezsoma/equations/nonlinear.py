@@ -13,7 +13,6 @@ from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.equations.boundary import PrescribedControls, prescribed
 from bezsoma.equations.following import FollowingPressure
 from bezsoma.equations.forces import forces
-from bezsoma.equations.pointwise import Internal
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.loads import Pressure
 from bezsoma.mechanics.path import body_at, turns
@@ -24,20 +23,15 @@ from bezsoma.mesh.control_net import ControlNet
 class NonlinearEquations:
     """F(u) = t R(u) on the free components, u = g(t) on the others, t the fraction of the load.
 
-    internal gives F; dead (c, 3) N are the loads that do not depend on u, `following` those that
+    dead (c, 3) N are the loads that do not depend on u, `following` those that
     do; `known` says what is held at the whole load.
     """
 
     body: Body
-    internal: Internal
+    net: ControlNet
     dead: Floats
     following: tuple[FollowingPressure, ...]
     known: PrescribedControls
-
-    @property
-    def net(self) -> ControlNet:
-        """The control net."""
-        return self.internal.net
 
     @property
     def held(self) -> Bools:
@@ -53,11 +47,6 @@ class NonlinearEquations:
     def free(self) -> int:
         """How many components are unknown."""
         return int(self.held.size - self.held.sum())
-
-    @property
-    def symmetric(self) -> bool:
-        """Whether the tangent is a symmetric form."""
-        return not self.following and self.internal.symmetric
 
     def given(self, fraction: float) -> Floats:
         """The prescribed values (c, 3) mm at a fraction of the load, zero where free."""
@@ -81,20 +70,19 @@ class NonlinearEquations:
 
 
 def nonlinear_equations(
-    body: Body, net: ControlNet, internal: Internal, known: PrescribedControls
+    body: Body, net: ControlNet, known: PrescribedControls
 ) -> NonlinearEquations:
-    """The equations of a body from its internal forces and what is held.
+    """The equations of a body on its net, from what is held.
 
-    >>> from bezsoma.equations.pointwise import Pointwise
     >>> from bezsoma.mechanics import Fixed, LinearElastic
     >>> from bezsoma.mesh.solids import block
     >>> law, loads = LinearElastic(1.0, 0.3), [Pressure("top", value=1.0, following=True)]
     >>> body = Body(block(), 2, law, [Fixed("bottom")], loads)
     >>> net = ControlNet(body.mesh, 2)
-    >>> found = nonlinear_equations(body, net, Pointwise(net, (law,), 2), prescribed(body, net))
+    >>> found = nonlinear_equations(body, net, prescribed(body, net))
     >>> u = np.zeros((net.count, 3))
-    >>> found.applied(u, 0.5).sum(axis=0).round(12).tolist(), found.symmetric
-    ([0.0, 0.0, -0.5], False)
+    >>> found.applied(u, 0.5).sum(axis=0).round(12).tolist()
+    [0.0, 0.0, -0.5]
     """
     following = tuple(
         FollowingPressure(net, load, surface)
@@ -102,4 +90,4 @@ def nonlinear_equations(
         if isinstance(load, Pressure) and load.following
         for surface in load.surfaces
     )
-    return NonlinearEquations(body, internal, forces(body, net), following, known)
+    return NonlinearEquations(body, net, forces(body, net), following, known)

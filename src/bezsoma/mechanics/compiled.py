@@ -25,21 +25,61 @@ class Compiled(Protocol):
 
 def stress(self: Compiled, H: Floats) -> Floats:
     """Stress (..., 3, 3) MPa at the displacement gradient H (..., 3, 3), by the core."""
-    return self.core.stress(np.ascontiguousarray(H, dtype=np.float64))
+    return self.core.stress(_rows(H, np.shape(H))).reshape(np.shape(H))
 
 
 def derivative(self: Compiled, H: Floats, dH: Floats) -> Floats:
     """The change (..., 3, 3) MPa of the stress at H in the direction dH, by the core."""
-    H, dH = np.broadcast_arrays(np.asarray(H, dtype=np.float64), dH)
-    return self.core.derivative(np.ascontiguousarray(H), np.ascontiguousarray(dH))
+    shape = np.broadcast_shapes(np.shape(H), np.shape(dH))
+    return self.core.derivative(_rows(H, shape), _rows(dH, shape)).reshape(shape)
 
 
 def energy(self: Compiled, H: Floats) -> Floats:
     """The stored energy (...) N/mm2, by the core; tau : eps for a law that has none."""
-    H = np.ascontiguousarray(H, dtype=np.float64)
     if self.core.has_energy:
-        return self.core.energy(H)
-    return np.asarray(np.einsum("...ij,...ij->...", self.core.stress(H), H))
+        return self.core.energy(_rows(H, np.shape(H))).reshape(np.shape(H)[:-2])
+    return np.asarray(np.einsum("...ij,...ij->...", stress(self, H), H))
+
+
+def mixed_stress(self: Compiled, H: Floats, p: Floats) -> tuple[Floats, Floats]:
+    """P (..., 3, 3) MPa and c (...) at H (..., 3, 3) and the pressure p (...) MPa, by the core."""
+    shape = np.shape(H)
+    P, c = _beside(self).mixed_stress(_rows(H, shape), _row(p, shape))
+    return P.reshape(shape), c.reshape(shape[:-2])
+
+
+def mixed_derivative(
+    self: Compiled, H: Floats, p: Floats, dH: Floats, dp: Floats
+) -> tuple[Floats, Floats]:
+    """The changes of P and c in the direction dH, dp, by the core."""
+    shape = np.broadcast_shapes(np.shape(H), np.shape(dH))
+    rows = (_rows(H, shape), _row(p, shape), _rows(dH, shape), _row(dp, shape))
+    dP, dc = _beside(self).mixed_derivative(*rows)
+    return dP.reshape(shape), dc.reshape(shape[:-2])
+
+
+def mixed_energy(self: Compiled, H: Floats, p: Floats) -> Floats:
+    """The stored energy (...) N/mm2, or P : H where there is none, by the core."""
+    shape = np.shape(H)
+    if _beside(self).has_energy:
+        found = _beside(self).mixed_energy(_rows(H, shape), _row(p, shape))
+        return found.reshape(shape[:-2])
+    return np.asarray(np.einsum("...ij,...ij->...", mixed_stress(self, H, p)[0], H))
+
+
+def _beside(self: Compiled) -> _core.Law:
+    """The core's law for the mixed form, where it is another."""
+    found: _core.Law = getattr(self, "core_mixed", self.core)
+    return found
+
+
+def _rows(H: Floats, shape: tuple[int, ...]) -> Floats:
+    """As the core takes it, (q, 3, 3)."""
+    return np.ascontiguousarray(np.broadcast_to(H, shape), dtype=np.float64).reshape(-1, 3, 3)
+
+
+def _row(p: Floats, shape: tuple[int, ...]) -> Floats:
+    return np.ascontiguousarray(np.broadcast_to(p, shape[:-2]), dtype=np.float64).reshape(-1)
 
 
 def positive(value: Any, what: str, unit: str, why: str) -> float:

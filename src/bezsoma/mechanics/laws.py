@@ -304,3 +304,18 @@ def at_rest(law: Law) -> tuple[float, float]:
     swelling, whole = np.einsum("iijj", C), np.einsum("ijij", C)
     mu = (3 * whole - swelling) / 30
     return float((swelling - 6 * mu) / 9), float(mu)
+
+
+def shear_at_rest(law: MixedLaw) -> float:
+    """The shear modulus [MPa] of a law beside a pressure, near rest: the mean over three shears.
+
+    >>> law = FunctionLaw(lambda H: H + np.swapaxes(H, -1, -2), finite=False, kappa=np.inf)
+    >>> round(shear_at_rest(law), 12)
+    1.0
+    """
+    H, p, moduli = np.zeros((3, 3)), np.zeros(()), []
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        shear = np.zeros((3, 3))
+        shear[i, j] = shear[j, i] = 0.5
+        moduli.append(law.mixed_derivative(H, p, shear, p)[0][i, j])
+    return float(np.mean(moduli))

@@ -80,12 +80,15 @@ class Stiffening:
     def core(self) -> _core.Law:
         """The core's law."""
         letter = "_engineering" if self.shears == "engineering" else ""
-        parameters = np.array([*kappa_mu(self.E, self.nu), self.A])
+        parameters = [*kappa_mu(self.E, self.nu), self.A]
         return _core.Law(f"stiffening_{self.measure}{letter}", parameters)
 
     stress = compiled.stress
     derivative = compiled.derivative
     energy = compiled.energy
+    mixed_stress = compiled.mixed_stress
+    mixed_derivative = compiled.mixed_derivative
+    mixed_energy = compiled.mixed_energy
 
     def secant(self, H: Floats, dH: Floats) -> Floats:
         """C(H) dH (..., 3, 3) MPa with stress(H) = C(H) H: the secant of the paper's eq. 51.

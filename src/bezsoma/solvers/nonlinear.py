@@ -11,9 +11,10 @@ import numpy as np
 
 from bezsoma.arrays import Floats, frozen
 from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.internal import internal_forces
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.nonlinear import NonlinearEquations, nonlinear_equations
-from bezsoma.equations.pointwise import Pointwise
+from bezsoma.equations.pointwise import Internal, Pointwise
 from bezsoma.equations.rigid import refuse_rigid_motions
 from bezsoma.equations.stress import swelling
 from bezsoma.errors import InputError, NotConverged, unknown
@@ -21,11 +22,13 @@ from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import Law, Secant, at_rest
 from bezsoma.mechanics.loads import Pressure, exactness_checked
 from bezsoma.mechanics.path import body_at
+from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
 from bezsoma.solvers.multigrid import preconditioner
 from bezsoma.solvers.newton import Balance, Iteration, Rule, System
+from bezsoma.solvers.nonlinear_mixed import applied, factored, level, mixed_problem
 from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.tangents import Precondition, applied_tangents, factored_tangents
 from bezsoma.solvers.watch import Watch
@@ -68,30 +71,84 @@ def nonlinear_solution(
     body: Body, solver: str, rtol: float, threads: int, loading: Loading, watch: Watch
 ) -> Solution:
     """The displacement of a body of any laws, and what follows from it: see `solve`."""
-    laws = _laws(body)
+    exactness = loading.exactness_for(body.degree)
+    rule, steps = Rule(rtol, *METHODS[loading.method]), steps_checked(loading.steps)
+    if body.mixed and loading.method == "secant":
+        raise InputError("method='secant' is for a displacement alone; take 'newton'")
     with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
         net = ControlNet(body.mesh, body.degree)
     with watch.stage("supports", f"{3 * net.count} unknowns"):
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
-    free = int(known.mask.size - known.mask.sum())
-    internal = Pointwise(net, laws, loading.exactness_for(body.degree))
-    with watch.stage("loads", f"{len(body.loads)} given"):
-        equations = nonlinear_equations(body, net, internal, known)
-    chosen = _choice(free, solver)
-    with watch.stage("preconditioner", chosen):
-        system = _system(equations, internal, chosen, loading.method, threads)
-    rule = Rule(rtol, *METHODS[loading.method])
-    with watch.stage("solving", f"{loading.method}, {chosen}"):
-        reached = loaded(
-            system, np.zeros(3 * net.count), steps_checked(loading.steps), rule, _teller(watch)
+    chosen = _choice(int(known.mask.size - known.mask.sum()), solver)
+    with watch.stage("equations", f"{len(body.loads)} loads, {chosen}"):
+        equations = nonlinear_equations(body, net, known)
+        form = (_mixed if body.mixed else _plain)(
+            body, equations, exactness, chosen, loading.method, threads
         )
+    with watch.stage("solving", f"{loading.method}, {chosen}"):
+        reached = loaded(form.system, np.zeros(len(form.system.held)), steps, rule, _teller(watch))
     how = f"{_NAMES[loading.method]}, {_SOLVES[chosen]}"
     with watch.stage("reactions", "and energy"):
-        solution = _solution(equations, internal, reached, how, dict(watch.timings))
+        solution = _solution(equations, form, reached, how, dict(watch.timings))
     if reached.fraction < 1:
-        raise _unreached(reached, solution, body)
+        raise _unreached(reached, solution)
     return solution
+
+
+@dataclass(frozen=True, eq=False)
+class _Form:
+    """One form of the equations: what Newton iterates on, and what its answer means."""
+
+    system: System
+    pull: Callable[[Floats], Floats]
+    energy: Callable[[Floats], float]
+    pressure: Callable[[Floats], Field | BrokenField | None]
+
+
+def _plain(
+    body: Body,
+    equations: NonlinearEquations,
+    exactness: int,
+    chosen: str,
+    method: str,
+    threads: int,
+) -> _Form:
+    laws = _laws(body)
+    internal = internal_forces(equations.net, laws, exactness, threads)
+    pointwise = Pointwise(equations.net, laws, exactness)
+    system = _system(equations, internal, pointwise, chosen, method, threads)
+    return _Form(
+        system,
+        lambda x: internal.forces(x.reshape(-1, 3)),
+        lambda x: pointwise.energy(x.reshape(-1, 3)),
+        lambda x: None,
+    )
+
+
+def _mixed(
+    body: Body,
+    equations: NonlinearEquations,
+    exactness: int,
+    chosen: str,
+    method: str,
+    threads: int,
+) -> _Form:
+    problem = mixed_problem(body, equations, exactness)
+    tangent = factored(problem) if chosen == "direct" else applied(problem, threads)
+
+    def pressure(x: Floats) -> Field | BrokenField:
+        p, net = frozen(level(problem, problem.parted(x)[1])), problem.internal.pressure_net
+        if net.mesh is body.mesh:
+            return Field(net, p)
+        return BrokenField(body.mesh, net.degree, frozen(p[net.of_tet]))
+
+    return _Form(
+        problem.system(tangent),
+        lambda x: problem.internal.forces(*problem.parted(x))[0],
+        lambda x: problem.internal.energy(*problem.parted(x)),
+        pressure,
+    )
 
 
 _NAMES = {
@@ -128,33 +185,38 @@ def _laws(body: Body) -> tuple[Law, ...]:
 
 
 def _system(
-    equations: NonlinearEquations, internal: Pointwise, chosen: str, method: str, threads: int
+    equations: NonlinearEquations,
+    internal: Internal,
+    pointwise: Pointwise,
+    chosen: str,
+    method: str,
+    threads: int,
 ) -> System:
-    tangents = internal
     if method == "secant":
-        tangents = replace(internal, laws=tuple(Secant(law) for law in internal.laws))
+        pointwise = replace(pointwise, laws=tuple(Secant(law) for law in pointwise.laws))
     held = equations.held.ravel()
     if chosen == "direct":
-        tangent = factored_tangents(equations, tangents)
+        tangent = factored_tangents(equations, pointwise)
     else:
+        at_u = _preconditioner(equations, pointwise, threads)
+        tangents: Internal = pointwise if method == "secant" else internal
         symmetric = tangents.symmetric and not equations.following
-        at_u = _preconditioner(equations, internal, threads)
         tangent = applied_tangents(equations, tangents.tangent, at_u, symmetric)
     return System(
         held,
         (slice(0, len(held)),),
         (1.0,),
         lambda fraction: equations.given(fraction).ravel(),
-        lambda x, fraction: _balance(equations, x, fraction),
+        lambda x, fraction: _balance(equations, internal, x, fraction),
         tangent,
     )
 
 
 def _preconditioner(
-    equations: NonlinearEquations, internal: Pointwise, threads: int
+    equations: NonlinearEquations, pointwise: Pointwise, threads: int
 ) -> Precondition:
     """The preconditioner of the linear laws that the laws are near rest; never built anew."""
-    lame = frozen(np.array([at_rest(law) for law in internal.laws]))
+    lame = frozen(np.array([at_rest(law) for law in pointwise.laws]))
     operator = MatrixFree(equations.net, lame, threads)
     blocks = preconditioner(operator, equations.held)
 
@@ -166,9 +228,11 @@ def _preconditioner(
     return apply
 
 
-def _balance(equations: NonlinearEquations, x: Floats, fraction: float) -> Balance:
+def _balance(
+    equations: NonlinearEquations, internal: Internal, x: Floats, fraction: float
+) -> Balance:
     u = x.reshape(-1, 3)
-    F, R = equations.internal.forces(u).ravel(), equations.applied(u, fraction).ravel()
+    F, R = internal.forces(u).ravel(), equations.applied(u, fraction).ravel()
     lengths = (_length(F), _length(R))
     work = max(abs(float(np.einsum("i,i->", force, x))) for force in (F, R))
     return Balance(R - F, (max(lengths),), work)
@@ -191,33 +255,35 @@ def _teller(watch: Watch) -> Callable[[Iteration], None]:
 
 def _solution(
     equations: NonlinearEquations,
-    internal: Pointwise,
+    form: _Form,
     reached: Reached,
     how: str,
     timings: dict[str, float],
 ) -> Solution:
-    displacement = Field(equations.net, frozen(reached.x.reshape(-1, 3).copy()))
+    x, net = reached.x, equations.net
+    displacement = Field(net, frozen(x[: 3 * net.count].reshape(-1, 3).copy()))
     u = displacement.controls
-    pull = internal.forces(u) - equations.applied(u, reached.fraction)
-    history = tuple(iteration.residual for iteration in reached.path)
+    pull = form.pull(x) - equations.applied(u, reached.fraction)
     in_balance = [each for each in reached.path if each.fraction <= reached.fraction]
+    history = tuple(iteration.residual for iteration in reached.path)
     return Solution(
         body_at(equations.body, reached.fraction),
         displacement,
-        resultants(equations.net, equations.of_support, pull),
-        internal.energy(u),
+        resultants(net, equations.of_support, pull),
+        form.energy(x),
         swelling(equations.body, displacement),
         how,
         history,
         len(history),
         in_balance[-1].residual if in_balance else 0.0,
-        equations.free,
+        int(len(form.system.held) - form.system.held.sum()),
         timings,
+        form.pressure(x),
         path=reached.path,
     )
 
 
-def _unreached(reached: Reached, last: Solution, body: Body) -> NotConverged:
+def _unreached(reached: Reached, last: Solution) -> NotConverged:
     history = [iteration.residual for iteration in reached.path]
     return NotConverged(
         f"at {100 * reached.tried:.4g} % of the load no equilibrium was found, the last is at "

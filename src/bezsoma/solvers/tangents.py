@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from bezsoma.arrays import Bools, Floats, Ints
@@ -31,6 +31,8 @@ class Factored:
 
     matrix: csr_array[Any]
     free: Ints
+    scale: Floats | None = None
+    """What takes the units off unknowns of different kinds (n,), so that pivots compare."""
 
     def product(self, dx: Floats) -> Floats:
         """K dx (n,)."""
@@ -38,7 +40,9 @@ class Factored:
 
     def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
         """The free dx (n,) with K dx = b, refined once; `rtol` is met whatever it is."""
-        part = csc_array(self.matrix[self.free][:, self.free])
+        scale = np.ones(len(b)) if self.scale is None else self.scale
+        S = diags_array(scale[self.free])
+        part = csc_array(S @ self.matrix[self.free][:, self.free] @ S)
         try:
             factors = splu(part)
         except RuntimeError as singular:
@@ -47,12 +51,12 @@ class Factored:
                 "buckles or its law loses ellipticity"
             ) from singular
         dx = np.zeros_like(b)
-        dx[self.free] = factors.solve(b[self.free])
-        left = b[self.free] - part @ dx[self.free]
-        dx[self.free] += factors.solve(left)
+        right = (scale * b)[self.free]
+        dx[self.free] = factors.solve(right)
+        dx[self.free] += factors.solve(right - part @ dx[self.free])
         if not np.isfinite(dx).all():
             raise Breakdown("the tangent is singular to rounding")
-        return dx, 1
+        return scale * dx, 1
 
 
 @dataclass(frozen=True, eq=False)
