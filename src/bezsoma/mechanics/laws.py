@@ -142,7 +142,7 @@ class FunctionLaw:
 
     def derivative(self, H: Floats, dH: Floats) -> Floats:
         """The change of the stress in the direction dH, (..., 3, 3) MPa."""
-        shape = self._shape_slope(H, dH)
+        shape = self.shape_slope(H, dH)
         if self.kappa is None:
             return shape
         change, gradient = _volume(H, self.finite)
@@ -169,7 +169,7 @@ class FunctionLaw:
         """The changes of P and c: see `MixedLaw`."""
         _, gradient = _volume(H, self.finite)
         bent = _volume_slope(H, dH, self.finite)
-        dP = self._shape_slope(H, dH) - dp[..., None, None] * gradient - p[..., None, None] * bent
+        dP = self.shape_slope(H, dH) - dp[..., None, None] * gradient - p[..., None, None] * bent
         return dP, -np.einsum("...ij,...ij->...", gradient, dH) - dp / self._kappa
 
     def mixed_energy(self, H: Floats, p: Floats) -> Floats:
@@ -185,7 +185,8 @@ class FunctionLaw:
         assert self.kappa is not None  # Body refuses a law without it beside a pressure
         return self.kappa
 
-    def _shape_slope(self, H: Floats, dH: Floats) -> Floats:
+    def shape_slope(self, H: Floats, dH: Floats) -> Floats:
+        """The change of the function in the direction dH, without the volume's."""
         if callable(self.slope):
             return self.slope(H, dH)
         if self.slope == "complex step":
@@ -268,14 +269,14 @@ class Secant:
 def _answers(law: FunctionLaw) -> None:
     """Refuses a function that does not answer with stress at rest, or cannot be differentiated."""
     rest = np.zeros((2, 3, 3))
-    shape = np.shape(law.stress(rest))
+    shape = np.shape(law.function(rest))
     if shape != rest.shape:
         raise InputError(
             f"the stress of FunctionLaw answers with shape {shape} for H of shape (2, 3, 3); it "
             "must give one 3 x 3 stress for each H"
         )
     try:
-        slope = law.derivative(rest, np.tile(np.diag([1.0, 0.5, 0.2]), (2, 1, 1)))
+        slope = law.shape_slope(rest, np.tile(np.diag([1.0, 0.5, 0.2]), (2, 1, 1)))
     except (TypeError, AttributeError, np.exceptions.ComplexWarning) as error:
         raise InputError(
             f"the derivative of FunctionLaw cannot be taken ({error}); give derivative=a function "
