@@ -23,6 +23,9 @@ PATH = 1e-8
 """Two ways to the same answer, each stopped at a residual of 1e-10."""
 
 
+SIDES = [bz.Fixed(at, components=c) for at, c in (("left", "x"), ("front", "y"), ("bottom", "z"))]
+
+
 def bent(
     law: Any, degree: int = 2, shift: float = 0.5, cells: Any = (3, 1, 1), **more: Any
 ) -> bz.Body:
@@ -167,9 +170,6 @@ def test_closed_surface_under_following_pressure_feels_no_net_force() -> None:
 def test_cube_pressed_from_all_sides(solver: str) -> None:
     """Cauchy stress is -p, so that P = -p l^2 for the stretch l in all directions."""
     p, mu, lam = 0.3, 2 / 2 / 1.3, 2 * 0.3 / 1.3 / 0.4
-    held = [
-        bz.Fixed(at, components=c) for at, c in (("left", "x"), ("front", "y"), ("bottom", "z"))
-    ]
     load = bz.Pressure("right", "back", "top", value=p, following=True)
     solution = bz.solve(bz.Body(bz.block(), 2, bz.NeoHooke(2.0, 0.3), SIDES, [load]), solver=solver)
     stretch = 1 + solution.displacement.at(np.ones((1, 3)))[0, 0]
@@ -227,9 +227,6 @@ def test_tangent_of_the_core_is_that_over_arrays() -> None:
 )
 def test_incompressible_bar(law: Any, force: float, solver: str) -> None:
     """F = dW/dl with the other stretches l^(-1/2): the textbook's uniaxial formulas."""
-    held = [
-        bz.Fixed(at, components=c) for at, c in (("left", "x"), ("front", "y"), ("bottom", "z"))
-    ]
     drawn = bz.Moved("top", translation=(0, 0, 0.4), components="z")
     body = bz.Body(bz.block(), 2, law, [*SIDES, drawn], incompressible=True)
     solution = bz.solve(body, solver=solver)
@@ -239,11 +236,8 @@ def test_incompressible_bar(law: Any, force: float, solver: str) -> None:
 
 @pytest.mark.parametrize("law", [bz.Stiffening(E, 0.45, 5.0), bz.MooneyRivlin(E, E / 3, 10 * E)])
 def test_pressure_of_its_own_gives_the_same_where_strain_is_uniform(law: Any) -> None:
-    held = [
-        bz.Fixed(at, components=c) for at, c in (("left", "x"), ("front", "y"), ("bottom", "z"))
-    ]
     body = bz.Body(
-        bz.block(), 2, law, [*held, bz.Moved("top", translation=(0, 0, 0.3), components="z")]
+        bz.block(), 2, law, [*SIDES, bz.Moved("top", translation=(0, 0, 0.3), components="z")]
     )
     one, other = bz.solve(body), bz.solve(replace(body, pressure_degree=1))
     assert apart(other.displacement.controls, one.displacement.controls) < PATH

@@ -24,6 +24,10 @@ LOOSEST = 0.1
 """Linear solves stop at this part of the residual at the latest (S. C. Eisenstat and H. F. Walker,
 SIAM J. Sci. Comput. 17, 1996, doi:10.1137/0917003, choice 2 with gamma = 0.9, alpha = 2)."""
 TIGHTEST = 1e-12
+SHORT = 0.25
+LEAVE = 6
+GROWTH = 1e6
+"""No whole step may let the residual grow by more."""
 FLOOR = 1e-3
 """Where a body is carried along unstrained all forces are rounding: the residual is then measured
 by this part of what it was when the supports had moved and nothing else."""
@@ -94,6 +98,52 @@ class Iteration:
     linear: int
 
 
+@dataclass
+class _Watchdog:
+    """Leave to go uphill for a while.
+
+    Where a thin body bends, full corrections stretch it first and put that right in the next
+    iteration: a residual that has to fall each time would creep. After two short steps the next
+    `LEAVE` are taken whole; what has not come below where it began by then is taken back, and
+    that was the last time (R. M. Chamberlain et al., Math. Program. Study 16, 1982,
+    doi:10.1007/BFb0120945).
+    """
+
+    short: int = 0
+    left: int = 0
+    bites: bool = False
+    x: Floats = field(default_factory=lambda: np.zeros(0))
+    balance: Balance | None = None
+    size: float = np.inf
+
+    @property
+    def free(self) -> bool:
+        """Whether the residual may grow now."""
+        return self.left > 0
+
+    def seen(
+        self, factor: float, x: Floats, balance: Balance, size: float
+    ) -> tuple[Floats, Balance]:
+        """Where to go on after a step of that factor."""
+        if not self.free:
+            self.short = self.short + 1 if factor <= SHORT else 0
+            if self.short == 2 and not self.bites:
+                self.left, self.x, self.balance, self.size = LEAVE, x, balance, size
+            return x, balance
+        self.left -= 1
+        if size < self.size:
+            self.left = self.short = 0
+        elif not self.left:
+            return self.back()
+        return x, balance
+
+    def back(self) -> tuple[Floats, Balance]:
+        """Where the leave began."""
+        assert self.balance is not None
+        self.left, self.bites = 0, True
+        return self.x, self.balance
+
+
 Record = Callable[[Iteration], None]
 
 
@@ -103,7 +153,7 @@ class Rule:
 
     rtol: float
     renew: bool = True
-    most: int = 30
+    most: int = 40
 
 
 @dataclass
@@ -156,6 +206,7 @@ def equilibrium(
     goal = system.given(fraction)
     balance = system.balance(x, fraction)
     energy, tangent, before = 0.0, None, np.inf
+    watchdog = _Watchdog()
     for count in range(rule.most + 1):
         jump = np.where(system.held, goal - x, 0.0)
         moving = bool(jump.any())
@@ -177,9 +228,17 @@ def equilibrium(
         except Breakdown as failure:
             raise StepFailed(str(failure)) from failure
         dx += jump
-        factor, x, balance = _searched(step, x, dx, b, moving)
+        try:
+            factor, x, balance = _searched(step, x, dx, b, moving, watchdog.free)
+        except StepFailed:
+            if not watchdog.free:
+                raise
+            x, balance = watchdog.back()
+            continue
         energy = _energy(step, balance, dx)
         record(Iteration(number, fraction, step.relative(balance), energy, factor, linear))
+        if not moving:
+            x, balance = watchdog.seen(factor, x, balance, step.merit(balance.r))
     raise StepFailed(
         f"{rule.most} iterations leave a residual of {residual:.3g} and an energy of {energy:.3g}, "
         f"{rule.rtol:g} were asked for"
@@ -213,7 +272,7 @@ def _energy(step: _Step, balance: Balance, dx: Floats) -> float:
 
 
 def _searched(
-    step: _Step, x: Floats, dx: Floats, b: Floats, moving: bool
+    step: _Step, x: Floats, dx: Floats, b: Floats, moving: bool, free: bool
 ) -> tuple[float, Floats, Balance]:
     """The part of dx that is taken, the state there and its balance."""
     start, factor = step.merit(b), 1.0
@@ -229,7 +288,8 @@ def _searched(
             why = str(failure)
         else:
             size = step.merit(balance.r)
-            falls = size <= (1.0 if moving else 1 - SUFFICIENT * factor) * start + rounding
+            allowed = 1.0 if moving else GROWTH if free else 1 - SUFFICIENT * factor
+            falls = size <= allowed * start + rounding
             if falls or step.relative(balance) <= step.rule.rtol:
                 return factor, there, balance
             why = "the residual does not fall along the correction"

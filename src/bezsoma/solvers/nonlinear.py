@@ -33,7 +33,7 @@ from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.tangents import Precondition, applied_tangents, factored_tangents
 from bezsoma.solvers.watch import Watch
 
-METHODS = {"newton": (True, 30), "modified": (False, 200), "secant": (True, 500)}
+METHODS = {"newton": (True, 40), "modified": (False, 200), "secant": (True, 500)}
 """Whether the tangent is formed anew in each iteration, and how many there may be."""
 SOLVERS = ("auto", "direct", "multigrid")
 
