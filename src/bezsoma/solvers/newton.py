@@ -169,7 +169,8 @@ class _Step:
     rule: Rule
     record: Record
     floor: tuple[float, ...] = ()
-    sizes: list[float] = field(default_factory=list)
+    refused: str = ""
+    """Why the last state that could not be was refused."""
 
     def free(self, r: Floats) -> Floats:
         return np.where(self.system.held, 0.0, r)
@@ -178,21 +179,30 @@ class _Step:
         """The weighted length of a residual over what is free."""
         free = self.free(r)
         parts = zip(self.system.parts, self.system.weights, strict=True)
-        return float(np.sqrt(sum(w**2 * _square(free[part]) for part, w in parts)))
+        return extent(np.array([w * extent(free[part]) for part, w in parts]))
 
     def relative(self, balance: Balance) -> float:
         """The largest of the relative residuals of the parts."""
         free, worst = self.free(balance.r), 0.0
         floor = self.floor or (0.0,) * len(self.system.parts)
         for part, size, least in zip(self.system.parts, balance.references, floor, strict=True):
-            length = np.sqrt(_square(free[part]))
+            length = extent(free[part])
             if length > 0:
-                worst = max(worst, float(length / max(size, least, np.finfo(float).tiny)))
+                worst = max(worst, length / max(size, least, np.finfo(float).tiny))
         return worst
 
 
-def _square(x: Floats) -> float:
-    return float(np.einsum("i,i->", x, x))
+def extent(x: Floats) -> float:
+    """The Euclidean norm of x (n,), also where squares would overflow; no BLAS, see `krylov.dot`.
+
+    >>> float(round(extent(np.array([3e200, 4e200])) / 1e200, 12))
+    5.0
+    """
+    size = float(np.abs(x).max(initial=0.0))
+    if size == 0 or not np.isfinite(size):
+        return size
+    scaled = x / size
+    return float(size * np.sqrt(np.einsum("i,i->", scaled, scaled)))
 
 
 def equilibrium(
@@ -222,8 +232,7 @@ def equilibrium(
             tangent = system.tangent(x, fraction)
         b = step.free(balance.r - tangent.product(jump) if moving else balance.r)
         if moving:
-            lengths = (np.sqrt(_square(b[part])) for part in system.parts)
-            step.floor = tuple(FLOOR * float(length) for length in lengths)
+            step.floor = tuple(FLOOR * extent(b[part]) for part in system.parts)
         eta = FIRST if moving else _forcing(step, b, balance, before)
         before = step.merit(b)
         try:
@@ -244,7 +253,7 @@ def equilibrium(
             x, balance = watchdog.seen(factor, x, balance, step.merit(balance.r))
     raise StepFailed(
         f"{rule.most} iterations leave a residual of {residual:.3g} and an energy of {energy:.3g}, "
-        f"{rule.rtol:g} were asked for"
+        f"{rule.rtol:g} were asked for" + (f"; refused was {step.refused}" if step.refused else "")
     )
 
 
@@ -288,7 +297,7 @@ def _searched(
         try:
             balance = step.system.balance(there, step.fraction)
         except Inadmissible as failure:
-            why = str(failure)
+            why = step.refused = str(failure)
         else:
             size = step.merit(balance.r)
             allowed = 1.0 if moving else GROWTH if free else 1 - SUFFICIENT * factor

@@ -27,7 +27,7 @@ from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
 from bezsoma.solvers.multigrid import preconditioner
-from bezsoma.solvers.newton import Balance, Iteration, Rule, System
+from bezsoma.solvers.newton import Balance, Iteration, Rule, System, extent
 from bezsoma.solvers.nonlinear_mixed import applied, factored, level, mixed_problem
 from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.tangents import Precondition, applied_tangents, factored_tangents
@@ -233,13 +233,9 @@ def _balance(
 ) -> Balance:
     u = x.reshape(-1, 3)
     F, R = internal.forces(u).ravel(), equations.applied(u, fraction).ravel()
-    lengths = (_length(F), _length(R))
+    lengths = (extent(F), extent(R))
     work = max(abs(float(np.einsum("i,i->", force, x))) for force in (F, R))
     return Balance(R - F, (max(lengths),), work)
-
-
-def _length(x: Floats) -> float:
-    return float(np.sqrt(np.einsum("i,i->", x, x)))
 
 
 def _teller(watch: Watch) -> Callable[[Iteration], None]:

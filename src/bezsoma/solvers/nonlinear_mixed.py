@@ -24,7 +24,7 @@ from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.torn import pressure_net
 from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.multigrid import preconditioner
-from bezsoma.solvers.newton import Balance, Breakdown, Linearised, System
+from bezsoma.solvers.newton import Balance, Breakdown, Linearised, System, extent
 from bezsoma.solvers.tangents import Factored
 
 MOST_PRODUCTS = 600
@@ -77,7 +77,7 @@ class MixedProblem:
         m = net.of_tet.shape[1]
         own = np.repeat(net.mesh.volumes / m, m)
         volumes = np.bincount(net.of_tet.ravel(), own, net.count).astype(np.float64)
-        references = (max(_length(F), _length(R)), _length(volumes))
+        references = (max(extent(F), extent(R)), extent(volumes))
         return Balance(np.concatenate([R - F, -g]), references, work)
 
     def given(self, fraction: float) -> Floats:
@@ -216,7 +216,3 @@ def applied(problem: MixedProblem, threads: int) -> Callable[[Floats, float], Li
 def level(problem: MixedProblem, p: Floats) -> Floats:
     """The pressure (cp,) with mean zero where its level is not determined."""
     return without_mean(p, problem.modes, problem.internal.pressure_net)
-
-
-def _length(x: Floats) -> float:
-    return float(np.sqrt(np.einsum("i,i->", x, x)))
