@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib.metadata import version
 from typing import Any
@@ -166,6 +166,7 @@ class Solution:
             "iterations": self.iterations,
             "residual": self.residual,
             "history": list(self.history),
+            **({"steps": [asdict(each) for each in self.path]} if self.path else {}),
             "energy": self.energy,
             "volume_change": self.volume_change,
             "reactions": {
