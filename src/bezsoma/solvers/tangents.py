@@ -20,7 +20,7 @@ from bezsoma.solvers.bicgstab import stabilised
 from bezsoma.solvers.krylov import conjugate_gradients
 from bezsoma.solvers.newton import Breakdown, Linearised
 
-MOST_ITERATIONS = 3000
+MOST_ITERATIONS = 800
 
 Precondition = Callable[[Floats], Floats]
 
