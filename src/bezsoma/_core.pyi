@@ -158,27 +158,40 @@ def law_names() -> list[str]: ...
 class Pointwise:
     """Forces and tangents of laws, one a region, by quadrature without a matrix.
 
-    values (q, m): the Bernstein polynomials of degree - 1 at the points; weights (q,) with sum 1.
+    points (q, 4) barycentric, weights (q,) with sum 1, values (q, m): the Bernstein polynomials of
+    degree - 1 at the points. With a pressure net (its degree and first controls) the mixed form.
     """
 
     def __init__(
         self,
         walk: Walk,
         laws: list[Law],
-        values: Floats,
+        points: Floats,
         weights: Floats,
+        values: Floats,
         threads: int = 0,
         instructions: str = "",
+        single: bool = False,
+        pressure_degree: int = 0,
+        first_pressure: Int32s | None = None,
     ) -> None: ...
     def forces(self, u: Floats, f: Floats) -> None: ...
     def tangent(self, u: Floats, du: Floats, df: Floats) -> None: ...
+    def tangent_single(self, u: Singles, du: Singles, df: Singles) -> None: ...
     def energy(self, u: Floats) -> float: ...
+    def mixed_forces(self, u: Floats, p: Floats, f: Floats, g: Floats) -> None: ...
+    def mixed_tangent(
+        self, u: Floats, p: Floats, du: Floats, dp: Floats, df: Floats, dg: Floats
+    ) -> None: ...
+    def mixed_energy(self, u: Floats, p: Floats) -> float: ...
     @property
     def least_jacobian(self) -> tuple[float, int, int]:
-        """J, tet, point of the last forces(); J = inf if no law asks for it."""
+        """J, tet, point of the last forces or energy; J = inf if no law asks for it."""
     @property
     def greatest_exponent(self) -> tuple[float, int, int]:
-        """Argument of exp, tet, point of the last forces(); -inf if no law has one."""
+        """Argument of exp, tet, point of the last forces or energy; -inf if no law has one."""
+    @property
+    def bytes(self) -> int: ...
     @property
     def instructions(self) -> str: ...
     @property

@@ -3,12 +3,13 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/function.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <limits>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -24,8 +25,8 @@
 #include "elastic_operator.hpp"
 #include "elasticity.hpp"
 #include "law.hpp"
-#include "pointwise_operator.hpp"
 #include "mixed_operator.hpp"
+#include "pointwise_operator.hpp"
 #include "preconditioner.hpp"
 #include "simplex.hpp"
 #include "vertex_matrix.hpp"
@@ -331,7 +332,6 @@ public:
                static_cast<std::int64_t>(p.shape(0)) == operator_->pressures();
     }
 
-private:
     static bool numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
         std::int32_t next = 0;
         const std::size_t per_tet = first.shape(1);
@@ -345,6 +345,7 @@ private:
         return true;
     }
 
+private:
     std::mutex turn_;
     bezsoma::Team team_;
     const bezsoma::Kernels *kernels_;
@@ -477,8 +478,9 @@ public:
     }
     bool splits() const { return kernel().mixed_stress != nullptr; }
     void require_compressible() const {
-        require(std::isfinite(law_.parameters[0]),
-                "kappa = inf needs the mixed form: the displacement alone does not give the stress");
+        require(
+            std::isfinite(law_.parameters[0]),
+            "kappa = inf needs the mixed form: the displacement alone does not give the stress");
     }
     void require_split() const {
         require(splits(), "this law has no mixed form: it does not split into shape and volume");
@@ -538,77 +540,164 @@ private:
     const bezsoma::Kernels &kernels_;
 };
 
-/// Forces and tangents of laws, one a region, and the threads that work on them.
+/// Forces and tangents of laws, one a region, and the threads that work on them. With a pressure
+/// the mixed form.
 class Pointwise {
 public:
+    using First = In<std::int32_t, -1, -1>;
+
     Pointwise(const Walk &walk, const std::vector<const LawAtPoints *> &laws,
-              In<double, -1, -1> values, In<double, -1> weights, std::size_t threads,
-              const std::string &instructions)
+              In<double, -1, 4> points, In<double, -1> weights, In<double, -1, -1> values,
+              std::size_t threads, const std::string &instructions, bool single,
+              int pressure_degree, std::optional<First> first)
         : team_(threads), kernels_(kernels_of(instructions)) {
         const bezsoma::ElasticTets tets = walk.tets();
         require(laws.size() == static_cast<std::size_t>(tets.regions), "one law a region");
         require(values.shape(1) == bezsoma::count(tets.degree - 1) &&
-                    values.shape(0) == weights.shape(0) && weights.shape(0) > 0,
-                "values (points, controls of degree - 1) and weights (points,) must fit");
+                    values.shape(0) == weights.shape(0) && points.shape(0) == weights.shape(0) &&
+                    weights.shape(0) > 0,
+                "points (q, 4), weights (q,) and values (q, controls of degree - 1) must fit");
+        std::optional<bezsoma::PressureNet> pressure;
+        if (first) {
+            check_pressure(walk, tets, pressure_degree, *first, single);
+            pressure = {pressure_degree, first->data()};
+        }
         std::vector<bezsoma::Law> own;
         for (const LawAtPoints *law : laws) {
-            law->require_compressible();
+            if (first)
+                law->require_split();
+            else
+                law->require_compressible();
             own.push_back(law->law());
         }
         team_.watch(listen_to_signals);
+        const bezsoma::GivenRule rule{static_cast<std::int32_t>(weights.shape(0)), points.data(),
+                                      weights.data(), values.data()};
         nb::gil_scoped_release released;
-        operator_ = std::make_unique<bezsoma::PointwiseOperator>(
-            tets, std::move(own), values.data(), weights.data(),
-            static_cast<std::int32_t>(weights.shape(0)), kernels_, team_);
+        if (single)
+            single_ = std::make_unique<bezsoma::PointwiseOperator<float>>(
+                tets, pressure, std::move(own), rule, kernels_, team_);
+        else
+            double_ = std::make_unique<bezsoma::PointwiseOperator<double>>(
+                tets, pressure, std::move(own), rule, kernels_, team_);
     }
 
     void forces(In<double, -1, 3> u, Vectors f) {
-        fits(u.shape(0), f.shape(0));
+        fits(u.shape(0), f.shape(0), false);
         nb::gil_scoped_release released;
         const std::lock_guard turn(turn_);
-        operator_->forces(u.data(), f.data());
+        laws().forces({u.data(), nullptr}, {f.data(), nullptr});
     }
 
     void tangent(In<double, -1, 3> u, In<double, -1, 3> du, Vectors df) {
-        fits(u.shape(0), df.shape(0));
-        fits(du.shape(0), df.shape(0));
+        fits(u.shape(0), df.shape(0), false);
+        fits(du.shape(0), df.shape(0), false);
         nb::gil_scoped_release released;
         const std::lock_guard turn(turn_);
-        operator_->tangent(u.data(), du.data(), df.data());
+        laws().tangent({u.data(), nullptr}, {du.data(), nullptr}, {df.data(), nullptr});
+    }
+
+    void tangent_single(In<float, -1, 3> u, In<float, -1, 3> du,
+                        nb::ndarray<float, nb::shape<-1, 3>, nb::c_contig> df) {
+        require(single_ != nullptr, "this operator was made for float64");
+        const auto rows = static_cast<std::size_t>(single_->controls());
+        require(u.shape(0) == rows && du.shape(0) == rows && df.shape(0) == rows,
+                "displacements and forces must have one row a control");
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        single_->tangent({u.data(), nullptr}, {du.data(), nullptr}, {df.data(), nullptr});
     }
 
     double energy(In<double, -1, 3> u) {
-        fits(u.shape(0), u.shape(0));
-        require(operator_->has_energy(), "a law of this body has no energy");
+        fits(u.shape(0), u.shape(0), false);
+        require_energy();
         nb::gil_scoped_release released;
         const std::lock_guard turn(turn_);
-        return operator_->energy(u.data());
+        return laws().energy({u.data(), nullptr});
     }
 
-    nb::tuple least_jacobian() const { return told(operator_->seen().least_J, 1e30); }
-    nb::tuple greatest_exponent() const {
-        return told(operator_->seen().greatest_exponent, -1e30);
+    void mixed_forces(In<double, -1, 3> u, In<double, -1> p, Vectors f, Scalars g) {
+        fits(u.shape(0), f.shape(0), true);
+        fits_pressure(p.shape(0), g.shape(0));
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        laws().forces({u.data(), p.data()}, {f.data(), g.data()});
     }
+
+    void mixed_tangent(In<double, -1, 3> u, In<double, -1> p, In<double, -1, 3> du,
+                       In<double, -1> dp, Vectors df, Scalars dg) {
+        fits(u.shape(0), df.shape(0), true);
+        fits(du.shape(0), df.shape(0), true);
+        fits_pressure(p.shape(0), dg.shape(0));
+        fits_pressure(dp.shape(0), dg.shape(0));
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        laws().tangent({u.data(), p.data()}, {du.data(), dp.data()}, {df.data(), dg.data()});
+    }
+
+    double mixed_energy(In<double, -1, 3> u, In<double, -1> p) {
+        fits(u.shape(0), u.shape(0), true);
+        fits_pressure(p.shape(0), p.shape(0));
+        require_energy();
+        nb::gil_scoped_release released;
+        const std::lock_guard turn(turn_);
+        return laws().energy({u.data(), p.data()});
+    }
+
+    nb::tuple least_jacobian() { return told(laws().seen().least_J, 1e30); }
+    nb::tuple greatest_exponent() { return told(laws().seen().greatest_exponent, -1e30); }
     const char *instructions() const { return kernels_.name; }
     std::size_t threads() const { return team_.size(); }
+    std::size_t bytes() const { return single_ ? single_->bytes() : double_->bytes(); }
 
 private:
-    void fits(std::size_t x, std::size_t y) const {
-        require(static_cast<std::int64_t>(x) == operator_->controls() && y == x,
+    static void check_pressure(const Walk &walk, const bezsoma::ElasticTets &tets, int degree,
+                               const First &first, bool single) {
+        require(!single && tets.degree <= bezsoma::highest_mixed_degree && degree >= 1 &&
+                    degree < tets.degree,
+                "degrees must be 2 to 8 beside a pressure of a lower one, 1 at least, in float64");
+        require(first.shape(0) == walk.first.shape(0) &&
+                    first.shape(1) == static_cast<std::size_t>(bezsoma::entities_of_tet(degree)),
+                "the pressure's first must have a row a tet and a column for each entity");
+        require(MixedFree::numbered_by_walk(degree, first),
+                "the pressure must be numbered as the walk over the tets first touches it");
+    }
+
+    bezsoma::PointwiseOperator<double> &laws() {
+        require(double_ != nullptr, "this operator was made for float32");
+        return *double_;
+    }
+
+    void fits(std::size_t x, std::size_t y, bool mixed) {
+        require((laws().pressures() > 0) == mixed,
+                mixed ? "this operator has no pressure" : "this operator has a pressure");
+        require(static_cast<std::int64_t>(x) == laws().controls() && y == x,
                 "displacements and forces must have one row a control");
     }
 
+    void fits_pressure(std::size_t x, std::size_t y) {
+        require(static_cast<std::int64_t>(x) == laws().pressures() && y == x,
+                "p and g must have one row a control of the pressure");
+    }
+
+    void require_energy() {
+        for (const bezsoma::Law &law : laws().laws())
+            require(kernels_.pointwise->laws[law.number].has_energy,
+                    "a law of this body has no energy");
+    }
+
     static nb::tuple told(const bezsoma::Extreme &x, double nothing) {
-        const double value =
-            x.value == nothing ? std::copysign(std::numeric_limits<double>::infinity(), nothing)
-                               : x.value;
+        const double value = x.value == nothing
+                                 ? std::copysign(std::numeric_limits<double>::infinity(), nothing)
+                                 : x.value;
         return nb::make_tuple(value, x.place, x.point);
     }
 
     std::mutex turn_;
     bezsoma::Team team_;
     const bezsoma::Kernels &kernels_;
-    std::unique_ptr<bezsoma::PointwiseOperator> operator_;
+    std::unique_ptr<bezsoma::PointwiseOperator<double>> double_;
+    std::unique_ptr<bezsoma::PointwiseOperator<float>> single_;
 };
 
 } // namespace
@@ -679,12 +768,21 @@ NB_MODULE(_core, m) {
         return names;
     });
     nb::class_<Pointwise>(m, "Pointwise")
-        .def(nb::init<const Walk &, const std::vector<const LawAtPoints *> &, In<double, -1, -1>,
-                      In<double, -1>, std::size_t, const std::string &>(),
-             "walk"_a, "laws"_a, "values"_a, "weights"_a, "threads"_a = 0, "instructions"_a = "")
+        .def(nb::init<const Walk &, const std::vector<const LawAtPoints *> &, In<double, -1, 4>,
+                      In<double, -1>, In<double, -1, -1>, std::size_t, const std::string &, bool,
+                      int, std::optional<Pointwise::First>>(),
+             "walk"_a, "laws"_a, "points"_a, "weights"_a, "values"_a, "threads"_a = 0,
+             "instructions"_a = "", "single"_a = false, "pressure_degree"_a = 0,
+             "first_pressure"_a = nb::none())
         .def("forces", &Pointwise::forces, "u"_a, "f"_a)
         .def("tangent", &Pointwise::tangent, "u"_a, "du"_a, "df"_a)
+        .def("tangent_single", &Pointwise::tangent_single, "u"_a, "du"_a, "df"_a)
         .def("energy", &Pointwise::energy, "u"_a)
+        .def("mixed_forces", &Pointwise::mixed_forces, "u"_a, "p"_a, "f"_a, "g"_a)
+        .def("mixed_tangent", &Pointwise::mixed_tangent, "u"_a, "p"_a, "du"_a, "dp"_a, "df"_a,
+             "dg"_a)
+        .def("mixed_energy", &Pointwise::mixed_energy, "u"_a, "p"_a)
+        .def_prop_ro("bytes", &Pointwise::bytes)
         .def_prop_ro("least_jacobian", &Pointwise::least_jacobian)
         .def_prop_ro("greatest_exponent", &Pointwise::greatest_exponent)
         .def_prop_ro("instructions", &Pointwise::instructions)

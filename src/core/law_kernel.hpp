@@ -72,23 +72,23 @@ template <class Law, bool mixed, class T, int lanes> void energy(const AtPoints<
     put_down<T, lanes>(watch, at.watch);
 }
 
+/// In float32 only the derivative is asked for.
 template <class Law, class T, int lanes> static constexpr LawKernel<T> law_kernel() {
-    LawKernel<T> kernel{stress<Law, false, T, lanes>,
-                        derivative<Law, false, T, lanes>,
-                        nullptr,
-                        nullptr,
-                        nullptr,
-                        nullptr,
-                        Law::components,
-                        Law::finite,
-                        Law::has_energy};
-    if constexpr (Law::has_energy)
-        kernel.energy = energy<Law, false, T, lanes>;
-    if constexpr (Law::splits) {
-        kernel.mixed_stress = stress<Law, true, T, lanes>;
-        kernel.mixed_derivative = derivative<Law, true, T, lanes>;
+    LawKernel<T> kernel{};
+    kernel.components = Law::components;
+    kernel.finite = Law::finite;
+    kernel.has_energy = Law::has_energy;
+    kernel.derivative = derivative<Law, false, T, lanes>;
+    if constexpr (sizeof(T) == 8) {
+        kernel.stress = stress<Law, false, T, lanes>;
         if constexpr (Law::has_energy)
-            kernel.mixed_energy = energy<Law, true, T, lanes>;
+            kernel.energy = energy<Law, false, T, lanes>;
+        if constexpr (Law::splits) {
+            kernel.mixed_stress = stress<Law, true, T, lanes>;
+            kernel.mixed_derivative = derivative<Law, true, T, lanes>;
+            if constexpr (Law::has_energy)
+                kernel.mixed_energy = energy<Law, true, T, lanes>;
+        }
     }
     return kernel;
 }

@@ -11,79 +11,24 @@
 // A tangent forms H anew at each point: kept for every point it would cost more to read.
 #pragma once
 
+#include "mixed_kernels.hpp"
+
 #include "elastic_kernel.hpp"
-#include "pointwise_kernels.hpp"
+
+#include "mixed_kernel.hpp"
+#include "product.hpp"
 
 namespace bezsoma::BEZSOMA_ISA {
 
-/// Rows of a product that share the registers.
-constexpr int rows_at_once(int components) {
-    return BEZSOMA_BYTES == 64 ? (components < 9 ? 4 : 3) : components < 9 ? 2 : 1;
-}
-
-/// out[r] = (add ? out[r] : 0) + sum_i matrix[r, i] in[i] for `rows` rows of so many components.
-template <int components, int rows, class T, int lanes>
-BEZSOMA_INLINE void product_of_rows(int inner, const T *matrix, int stride, const T *in, T *out,
-                                    bool add) {
-    using R = Lanes<T, lanes>;
-    R sum[rows][components];
-#pragma GCC unroll 4
-    for (int r = 0; r < rows; ++r)
-#pragma GCC unroll 10
-        for (int c = 0; c < components; ++c)
-            sum[r][c] = add ? load<T, lanes>(out + (r * components + c) * lanes) : R{};
-    for (int i = 0; i < inner; ++i, in += components * lanes) {
-        R x[components];
-#pragma GCC unroll 10
-        for (int c = 0; c < components; ++c)
-            x[c] = load<T, lanes>(in + c * lanes);
-#pragma GCC unroll 4
-        for (int r = 0; r < rows; ++r) {
-            const R a = R{} + matrix[r * stride + i];
-#pragma GCC unroll 10
-            for (int c = 0; c < components; ++c)
-                sum[r][c] += a * x[c];
-        }
-    }
-#pragma GCC unroll 4
-    for (int r = 0; r < rows; ++r)
-#pragma GCC unroll 10
-        for (int c = 0; c < components; ++c)
-            store<T, lanes>(out + (r * components + c) * lanes, sum[r][c]);
-}
-
-template <int components, int rows, class T, int lanes>
-BEZSOMA_INLINE void rest_of_product(int left, int inner, const T *matrix, int stride, const T *in,
-                                    T *out, bool add) {
-    if (left == rows)
-        product_of_rows<components, rows, T, lanes>(inner, matrix, stride, in, out, add);
-    else if constexpr (rows > 1)
-        rest_of_product<components, rows - 1, T, lanes>(left, inner, matrix, stride, in, out, add);
-}
-
-/// out (rows, components, lanes) from in (inner, components, lanes).
-template <int components, class T, int lanes>
-__attribute__((noinline)) void product(int rows, int inner, const T *matrix, int stride,
-                                       const T *in, T *out, bool add) {
-    constexpr int many = rows_at_once(components);
-    int r = 0;
-    for (; r + many <= rows; r += many)
-        product_of_rows<components, many, T, lanes>(inner, matrix + r * stride, stride, in,
-                                                    out + r * components * lanes, add);
-    if constexpr (many > 1)
-        rest_of_product<components, many - 1, T, lanes>(rows - r, inner, matrix + r * stride,
-                                                        stride, in, out + r * components * lanes,
-                                                        add);
-}
-
-/// Where things lie in the scratch of a thread, in numbers.
+/// Where things lie in the scratch of a thread.
 template <int components, class T, int lanes> struct Scratch {
-    T *state, *change, *answer;                         // (controls, components, lanes)
+    T *raw, *state, *change, *answer;                     // (controls, components, lanes)
     T *state_there, *change_there, *answer_there, *watch; // (points at once, components, lanes)
 
     BEZSOMA_INLINE Scratch(T *begin, int controls) {
         constexpr int row = components * lanes;
-        state = begin;
+        raw = begin;
+        state = raw + controls * row;
         change = state + controls * row;
         answer = change + controls * row;
         state_there = answer + controls * row;
@@ -93,50 +38,57 @@ template <int components, class T, int lanes> struct Scratch {
     }
 };
 
-/// The gradient controls (controls, components, lanes) of a batch: n times strains or H.
+/// The shapes of a batch: grad L_i.
+template <class T, int lanes> BEZSOMA_INLINE Batch<T, lanes> shapes(const T *geometry) {
+    Batch<T, lanes> tet = {};
+    for (int k = 0; k < 9; ++k)
+        tet.g[k / 3][k % 3] = load<T, lanes>(geometry + k * lanes);
+    return tet;
+}
+
+/// The gradient controls (controls, row, lanes) of a batch: n times strains or H.
 template <int n, int components, class T, int lanes>
-BEZSOMA_INLINE void opened(const T *from, const std::int32_t *first, const Batch<T, lanes> &tet,
-                           T *to) {
+void opened(const T *from, const std::int32_t *first, const T *geometry, T *to, int row) {
     using R = Lanes<T, lanes>;
+    const Batch<T, lanes> tet = shapes<T, lanes>(geometry);
     R u[3 * controls(n)];
     gather<n, T, lanes>(from, first, u);
     each_control<n - 1>([&](int p, int p1, int p2, int p3) {
         R h[3][3];
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
-        T *at = to + p * components * lanes;
+        T *at = to + p * row * lanes;
 #pragma GCC unroll 9
         for (int c = 0; c < components; ++c) {
             const int k = c % 3, l = (c + 1) % 3;
-            const R entry = components == 9 ? h[c / 3][c % 3] : c < 3 ? h[c][c] : h[k][l] + h[l][k];
+            const R entry = components == 9 ? h[c / 3][k] : c < 3 ? h[k][k] : h[k][l] + h[l][k];
             store<T, lanes>(at + c * lanes, entry * static_cast<T>(n));
         }
     });
 }
 
-/// Adds the forces of moments (controls, components, lanes).
+/// Adds the forces of moments (controls, row, lanes).
 template <int n, int components, class T, int lanes>
-BEZSOMA_INLINE void closed(const T *from, const std::int32_t *first, const Batch<T, lanes> &tet,
-                           const Lanes<T, lanes> &volume, T *to) {
+void closed(const T *from, const std::int32_t *first, const T *geometry, T *to, int row) {
     using R = Lanes<T, lanes>;
     constexpr int of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-    R f[3 * controls(n)];
-    for (int row = 0; row < 3 * controls(n); ++row)
-        f[row] = R{};
-    const R scale = volume * static_cast<T>(n);
-    R g[3][3];
+    const R scale = load<T, lanes>(geometry + 9 * lanes) * static_cast<T>(n);
+    Batch<T, lanes> tet = shapes<T, lanes>(geometry);
     for (int i = 0; i < 9; ++i)
-        g[i / 3][i % 3] = tet.g[i / 3][i % 3] * scale;
+        tet.g[i / 3][i % 3] *= scale;
+    R f[3 * controls(n)];
+    for (R &force : f)
+        force = R{};
     each_control<n - 1>([&](int p, int p1, int p2, int p3) {
-        const T *at = from + p * components * lanes;
+        const T *at = from + p * row * lanes;
 #pragma GCC unroll 3
         for (int k = 0; k < 3; ++k) {
             R s[3];
 #pragma GCC unroll 3
             for (int l = 0; l < 3; ++l)
                 s[l] = load<T, lanes>(at + (components == 9 ? 3 * k + l : of[k][l]) * lanes);
-            const R f1 = s[0] * g[0][0] + s[1] * g[0][1] + s[2] * g[0][2];
-            const R f2 = s[0] * g[1][0] + s[1] * g[1][1] + s[2] * g[1][2];
-            const R f3 = s[0] * g[2][0] + s[1] * g[2][1] + s[2] * g[2][2];
+            const R f1 = s[0] * tet.g[0][0] + s[1] * tet.g[0][1] + s[2] * tet.g[0][2];
+            const R f2 = s[0] * tet.g[1][0] + s[1] * tet.g[1][1] + s[2] * tet.g[1][2];
+            const R f3 = s[0] * tet.g[2][0] + s[1] * tet.g[2][1] + s[2] * tet.g[2][2];
             f[3 * p + k] -= f1 + f2 + f3;
             f[3 * p1 + k] += f1;
             f[3 * p2 + k] += f2;
@@ -144,6 +96,30 @@ BEZSOMA_INLINE void closed(const T *from, const std::int32_t *first, const Batch
         }
     });
     scatter<n, T, lanes>(to, first, f);
+}
+
+/// The pressure as the last component of each row, elevated to degree n - 1.
+template <int n, int lanes>
+void opened_pressure(int degree, const double *from, const std::int32_t *first, double *to,
+                     int row) {
+    Lanes<double, lanes> p[controls(n - 1)];
+    gather_pressure<lanes>(degree, from, first, p);
+    raise(degree, n - 1, p);
+    for (int b = 0; b < controls(n - 1); ++b)
+        store<double, lanes>(to + (b * row + row - 1) * lanes, p[b] * ladder_scales<n - 1>.top[b]);
+}
+
+/// Adds V times the moments in the last component of each row, lowered to the pressure's degree.
+template <int n, int lanes>
+void closed_pressure(int degree, const double *from, const std::int32_t *first,
+                     const double *geometry, double *to, int row) {
+    const Lanes<double, lanes> volume = load<double, lanes>(geometry + 9 * lanes);
+    Lanes<double, lanes> g[controls(n - 1)];
+    for (int b = 0; b < controls(n - 1); ++b)
+        g[b] = load<double, lanes>(from + (b * row + row - 1) * lanes) * volume *
+               ladder_scales<n - 1>.top[b];
+    lower(n - 1, degree, g);
+    scatter_pressure<lanes>(degree, to, first, g);
 }
 
 /// Takes what a law has seen in batch i.
@@ -160,51 +136,81 @@ BEZSOMA_INLINE void look(const T *watch, std::int64_t i, Extremes &all) {
 
 enum class Asked { forces, tangent, energy };
 
-template <int n, int components, Asked asked, class T, int lanes>
-double of_batches(const PointwiseBatches<T> &b) {
+template <Asked asked, bool mixed, class T>
+BEZSOMA_INLINE typename LawKernel<T>::At law_of(const LawKernel<T> &law) {
+    if (asked == Asked::forces)
+        return mixed ? law.mixed_stress : law.stress;
+    if (asked == Asked::tangent)
+        return mixed ? law.mixed_derivative : law.derivative;
+    return mixed ? law.mixed_energy : law.energy;
+}
+
+/// The gradients, and in the mixed form the pressure, of batch i in the basis of the rule.
+template <int components, bool mixed, class T, int lanes>
+BEZSOMA_INLINE void brought(const PointwiseBatches<T> &b, std::int64_t i, const T *u, const T *p,
+                            T *raw, T *to) {
+    constexpr int row = components + mixed;
+    const NetKernel<T> &net = *b.net;
+    net.open[components == 9](u, b.first + i * net.entities * lanes, b.geometry + 10 * i * lanes,
+                              raw, row);
+    if constexpr (mixed)
+        net.open_pressure(b.pressure_degree, p,
+                          b.first_pressure + i * b.entities_of_pressure * lanes, raw, row);
+    folded<row, false, T, lanes>(b.rule, raw, to);
+}
+
+/// Adds the forces, and in the mixed form the changes of volume, of batch i.
+template <int components, bool mixed, class T, int lanes>
+BEZSOMA_INLINE void taken(const PointwiseBatches<T> &b, std::int64_t i, const T *moments, T *raw) {
+    constexpr int row = components + mixed;
+    const NetKernel<T> &net = *b.net;
+    const T *geometry = b.geometry + 10 * i * lanes;
+    folded<row, true, T, lanes>(b.rule, moments, raw);
+    net.close[components == 9](raw, b.first + i * net.entities * lanes, geometry, b.f, row);
+    if constexpr (mixed)
+        net.close_pressure(b.pressure_degree, raw,
+                           b.first_pressure + i * b.entities_of_pressure * lanes, geometry, b.g,
+                           row);
+}
+
+template <int components, bool mixed, Asked asked, class T, int lanes>
+double of_batches(PointwiseBatches<T> &b) {
     using R = Lanes<T, lanes>;
-    const Rule<T> &rule = *b.rule;
-    const Scratch<components, T, lanes> at(b.scratch, controls(n - 1));
-    const auto law = asked == Asked::forces    ? b.law->stress
-                     : asked == Asked::tangent ? b.law->derivative
-                                               : b.law->energy;
+    constexpr int row = components + mixed;
+    const Rule<T> &rule = b.rule;
+    const Scratch<row, T, lanes> at(b.scratch, rule.controls);
+    const auto law = law_of<asked, mixed>(*b.law);
     R energy = {};
     for (std::int64_t i = 0; i < b.count; ++i) {
-        const std::int32_t *first = b.first + i * entities(n) * lanes;
-        Batch<T, lanes> tet = {};
-        for (int k = 0; k < 9; ++k)
-            tet.g[k / 3][k % 3] = load<T, lanes>(b.geometry + (10 * i + k) * lanes);
-        const R volume = load<T, lanes>(b.geometry + (10 * i + 9) * lanes);
-        opened<n, components, T, lanes>(b.u, first, tet, at.state);
-        if (asked == Asked::tangent)
-            opened<n, components, T, lanes>(b.du, first, tet, at.change);
+        brought<components, mixed, T, lanes>(b, i, b.u, b.p, at.raw, at.state);
+        if constexpr (asked == Asked::tangent)
+            brought<components, mixed, T, lanes>(b, i, b.du, b.dp, at.raw, at.change);
         for (int l = 0; l < lanes; ++l) {
             at.watch[l] = static_cast<T>(1e30);
             at.watch[2 * lanes + l] = static_cast<T>(-1e30);
             at.watch[lanes + l] = at.watch[3 * lanes + l] = 0;
         }
-        for (int q = 0; q < rule.points; q += points_at_once) {
-            const int many = rule.points - q < points_at_once ? rule.points - q : points_at_once;
-            const T *values = rule.values + q * rule.controls;
-            product<components, T, lanes>(many, rule.controls, values, rule.controls, at.state,
-                                          at.state_there, false);
-            if (asked == Asked::tangent)
-                product<components, T, lanes>(many, rule.controls, values, rule.controls,
-                                              at.change, at.change_there, false);
+        for (int q = 0, many; q < rule.points; q += many) {
+            const int end = q < 4 * rule.fours ? 4 * rule.fours : rule.points;
+            many = end - q < points_at_once ? end - q : points_at_once;
+            at_points<row, T, lanes>(rule, q, many, at.state, at.state_there);
+            if constexpr (asked == Asked::tangent)
+                at_points<row, T, lanes>(rule, q, many, at.change, at.change_there);
             law({many, q, b.parameters, b.terms, at.state_there, at.change_there, at.answer_there,
                  at.watch});
-            if (asked == Asked::energy)
+            if constexpr (asked == Asked::energy) {
+                const R volume = load<T, lanes>(b.geometry + (10 * i + 9) * lanes);
                 for (int r = 0; r < many; ++r)
                     energy += load<T, lanes>(at.answer_there + r * lanes) *
                               (volume * rule.weights[q + r]);
-            else
-                product<components, T, lanes>(rule.controls, many, rule.tests + q, rule.points,
-                                              at.answer_there, at.answer, q > 0);
+            } else {
+                tested<row, T, lanes>(rule, q, many, at.answer_there, at.answer);
+            }
         }
-        if (asked != Asked::energy)
-            closed<n, components, T, lanes>(at.answer, first, tet, volume, b.f);
-        if (asked != Asked::tangent)
-            look<T, lanes>(at.watch, i, *b.extremes);
+        if constexpr (asked != Asked::energy)
+            taken<components, mixed, T, lanes>(b, i, at.answer, at.raw);
+        if constexpr (asked != Asked::tangent)
+            look<T, lanes>(at.watch, i, b.extremes);
     }
     double sum = 0;
     for (int l = 0; l < lanes; ++l)
@@ -212,10 +218,27 @@ double of_batches(const PointwiseBatches<T> &b) {
     return sum;
 }
 
-template <int n, Asked asked, class T, int lanes>
-double pointwise(const PointwiseBatches<T> &b) {
-    return b.law->components == 6 ? of_batches<n, 6, asked, T, lanes>(b)
-                                  : of_batches<n, 9, asked, T, lanes>(b);
+template <Asked asked, class T, int lanes> double pointwise(PointwiseBatches<T> &b) {
+    const bool small = b.law->components == 6;
+    if constexpr (sizeof(T) == 8)
+        if (b.first_pressure)
+            return small ? of_batches<6, true, asked, T, lanes>(b)
+                         : of_batches<9, true, asked, T, lanes>(b);
+    return small ? of_batches<6, false, asked, T, lanes>(b)
+                 : of_batches<9, false, asked, T, lanes>(b);
+}
+
+template <int n, class T, int lanes> static constexpr NetKernel<T> net_kernel() {
+    NetKernel<T> kernel{{opened<n, 6, T, lanes>, opened<n, 9, T, lanes>},
+                        {closed<n, 6, T, lanes>, closed<n, 9, T, lanes>},
+                        nullptr,
+                        nullptr,
+                        entities(n)};
+    if constexpr (n >= 2 && n <= highest_mixed_degree && sizeof(T) == 8) {
+        kernel.open_pressure = opened_pressure<n, lanes>;
+        kernel.close_pressure = closed_pressure<n, lanes>;
+    }
+    return kernel;
 }
 
 } // namespace bezsoma::BEZSOMA_ISA

@@ -39,41 +39,73 @@ template <class T> struct LawKernel {
     bool finite, has_energy;
 };
 
-/// A quadrature rule, and the polynomials of degree - 1 there: values (points, controls) and
-/// tests (controls, points), these times the weights.
+/// Controls that the four permutations of rule.hpp exchange: 4, 2 or 1 of them; control[j] is where
+/// permutation j takes the first. sum[k]: the place of their sum with character k, -1 for none.
+struct ControlOrbit {
+    std::int32_t controls, control[4], sum[4];
+};
+
+/// A quadrature rule, four points after four that the permutations exchange, then the others; and
+/// the polynomials of degree - 1 there in the basis of rule.hpp: values (points, controls) and
+/// tests (controls, points), these times the weights. Character k has begin[k] .. begin[k + 1].
 template <class T> struct Rule {
-    std::int32_t points, controls;
+    std::int32_t points, controls, fours, orbits;
+    const ControlOrbit *orbit;
+    std::int32_t begin[5];
     const T *values, *tests, *weights;
 };
 
-/// Tets of one law and region in batches of one per lane: see Batches.
+/// What depends on the degree of a net. `open` reads displacements of a batch and writes gradient
+/// controls (controls, row, lanes): strains [0] or H [1]; `close` takes moments of that layout and
+/// adds forces. Those of the pressure work on the last component of each row, elevated to the same
+/// degree; empty where there is no mixed form.
+template <class T> struct NetKernel {
+    void (*open[2])(const T *u, const std::int32_t *first, const T *geometry, T *to, int row);
+    void (*close[2])(const T *from, const std::int32_t *first, const T *geometry, T *f, int row);
+    void (*open_pressure)(int degree, const T *p, const std::int32_t *first, T *to, int row);
+    void (*close_pressure)(int degree, const T *from, const std::int32_t *first, const T *geometry,
+                           T *g, int row);
+    int entities;
+};
+
+/// Tets of one law and region in batches of one per lane: see Batches. Without a pressure, p, dp, g
+/// and first_pressure are empty; without a tangent, du and dp.
 /// geometry (batches, 10, lanes): grad L_i, i = 1..3, and the volume.
 template <class T> struct PointwiseBatches {
     std::int64_t count;
-    const std::int32_t *first;
+    const NetKernel<T> *net;
+    const std::int32_t *first, *first_pressure;
+    int pressure_degree, entities_of_pressure;
     const T *geometry;
-    const T *u, *du;
-    T *f;
+    const T *u, *du, *p, *dp;
+    T *f, *g;
     const LawKernel<T> *law;
     const T *parameters;
     std::int32_t terms;
-    const Rule<T> *rule;
-    T *scratch; // pointwise_scratch(degree, lanes) numbers
-    Extremes *extremes;
+    Rule<T> rule;
+    T *scratch; // scratch_of_pointwise numbers
+    Extremes extremes;
 };
 
-template <class T> struct PointwiseKernel {
-    void (*forces)(const PointwiseBatches<T> &);
-    void (*tangent)(const PointwiseBatches<T> &);
-    double (*energy)(const PointwiseBatches<T> &);
-};
+template <class T> using OnBatches = double (*)(PointwiseBatches<T> &);
+
+constexpr std::int32_t points_at_once = 8;
+
+/// Numbers that a batch needs beside its fields.
+constexpr std::int64_t scratch_of_pointwise(std::int64_t controls, std::int64_t lanes) {
+    return lanes * (10 * (4 * controls + 3 * points_at_once) + 4);
+}
 
 constexpr int number_of_laws = 14;
-constexpr std::int32_t points_at_once = 4;
 
+/// In float32 tangents alone, without a pressure.
 struct PointwiseKernels {
+    OnBatches<double> forces, tangent, energy; // the last returns the sum of it, others zero
+    OnBatches<float> single_tangent;
+    NetKernel<double> nets[10]; // by degree - 1
+    NetKernel<float> single_nets[10];
     LawKernel<double> laws[number_of_laws]; // in the order of law.cpp
-    PointwiseKernel<double> f64[10];        // by degree - 1
+    LawKernel<float> single_laws[number_of_laws];
 };
 
 } // namespace bezsoma

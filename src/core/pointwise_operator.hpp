@@ -1,70 +1,102 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <concepts>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "chunked_field.hpp"
 #include "elastic_operator.hpp"
 #include "law.hpp"
+#include "rule.hpp"
 
 namespace bezsoma {
 
-/// Forces, tangents and energy of laws, one a region, by quadrature without a matrix.
+/// A quadrature rule and the polynomials of degree - 1 at its points: see RuleTables.
+struct GivenRule {
+    std::int32_t count;
+    const double *points, *weights, *values;
+};
+
+/// The numbering of a pressure by the walk of the displacement.
+struct PressureNet {
+    int degree;
+    const std::int32_t *first; // (tets, entities of that degree)
+};
+
+/// Forces, tangents and energy of laws, one a region, by quadrature without a matrix; with a
+/// pressure net in the mixed form. In float32 the tangent of the displacement form alone.
 ///
 /// Per tet it keeps 10 numbers of geometry, where its controls lie and its number; nothing a point.
 /// Batches have tets of one region: within a chunk the tets are taken region by region.
-class PointwiseOperator {
+template <class T> class PointwiseOperator {
 public:
-    /// values (points, controls of degree - 1), weights (points,).
-    PointwiseOperator(const ElasticTets &tets, std::vector<Law> laws, const double *values,
-                      const double *weights, std::int32_t points, const Kernels &kernels,
+    PointwiseOperator(const ElasticTets &tets, std::optional<PressureNet> pressure,
+                      std::vector<Law> laws, const GivenRule &rule, const Kernels &kernels,
                       Team &team);
 
-    /// f = forces at u, both (controls, 3).
-    void forces(const double *u, double *f);
-    /// df = the change of the forces at u for a change du.
-    void tangent(const double *u, const double *du, double *df);
-    double energy(const double *u);
+    /// A displacement (controls, 3) and its pressure (pressures,), null in the displacement form.
+    struct Fields {
+        const T *u, *p;
+    };
+    struct Forces {
+        T *f, *g;
+    };
 
-    std::int64_t controls() const { return chunks_.controls; }
-    bool has_energy() const;
+    void forces(const Fields &at, const Forces &found)
+        requires std::same_as<T, double>;
+    /// The change of the forces at a state for a change of it.
+    void tangent(const Fields &at, const Fields &change, const Forces &found);
+    double energy(const Fields &at)
+        requires std::same_as<T, double>;
 
-    /// What the laws have seen in the last forces or energy; place is the number of a tet.
+    std::int64_t controls() const { return u_.controls(); }
+    std::int64_t pressures() const { return p_ ? p_->controls() : 0; }
+    const std::vector<Law> &laws() const { return laws_; }
+
+    /// What the laws have seen in the last forces or energy; place is the number of a tet, point
+    /// that of the rule as given.
     const Extremes &seen() const { return seen_; }
+    std::size_t bytes() const;
 
 private:
     struct Group { // batches of one region
         std::int64_t batch, batches;
         std::int32_t region;
     };
-    using Work = double (*)(const PointwiseKernel<double> &, const PointwiseBatches<double> &);
+    struct Work {
+        OnBatches<T> kernel;
+        Fields at, change;
+        Forces found;
+    };
 
     void group(const ElasticTets &tets);
     void pack(const ElasticTets &tets);
-    double on_chunk(std::size_t chunk, const double *u, const double *du, double *f, Work work,
-                    std::vector<double> &scratch);
-    double run(const double *u, const double *du, double *f, Work work);
-    double *take_over(const Chunk &chunk, const double *u, double *to) const;
-    void add_foreign(std::size_t chunk, double *f) const;
+    double run(const Work &work);
+    double on_chunk(std::size_t chunk, const Work &work, std::vector<T> &scratch);
+    PointwiseBatches<T> batches(const Group &group) const;
     void take_seen();
 
-    PointwiseKernel<double> kernel_;
-    const LawKernel<double> *law_kernels_;
+    const PointwiseKernels &kernels_;
+    const NetKernel<T> *net_;
+    const LawKernel<T> *law_kernels_;
     std::int64_t lanes_;
     Team &team_;
     std::vector<Law> laws_;
-    Rule<double> rule_;
-    std::vector<double> values_, tests_, weights_;
-    Chunks chunks_;
+    std::vector<std::vector<T>> parameters_;
+    RuleTables<T> rule_;
+    ChunkedField<T> u_;
+    std::optional<ChunkedField<T>> p_;
     std::vector<Group> groups_;
-    std::vector<std::size_t> group_;     // (chunks + 1,) the first group of each chunk
-    std::vector<std::int32_t> first_;    // (batches, entities, lanes)
-    std::vector<double> geometry_;       // (batches, 10, lanes)
-    std::vector<std::int32_t> tet_;      // (batches, lanes) of the mesh; -1: none
-    std::vector<double> foreign_, sums_; // (foreign controls, 3), (chunks,)
-    std::vector<Extremes> extremes_;     // (chunks,)
+    std::vector<std::size_t> group_;                   // (chunks + 1,) the first of each chunk
+    std::vector<std::int32_t> first_, first_pressure_; // (batches, entities, lanes)
+    std::vector<T> geometry_;                          // (batches, 10, lanes)
+    std::vector<std::int32_t> tet_;                    // (batches, lanes) of the mesh
+    std::vector<double> sums_;                         // (chunks,)
+    std::vector<Extremes> extremes_;                   // (chunks,)
     Extremes seen_;
-    std::vector<std::vector<double>> scratch_; // a thread each
+    std::vector<std::vector<T>> scratch_; // a thread each
 };
 
 } // namespace bezsoma

@@ -25,8 +25,8 @@ def cpp(project: Path) -> list[Path]:
 
 
 def tests(project: Path) -> list[Path]:
-    """The tests and what they share."""
-    return files(project, "tests/**/*.py", "benchmarks/**/*.py")
+    """The tests and what they share, the benchmarks, the tools."""
+    return files(project, "tests/**/*.py", "benchmarks/**/*.py", "tools/**/*.py")
 
 
 def prose(project: Path) -> list[Path]:

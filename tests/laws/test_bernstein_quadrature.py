@@ -1,23 +1,42 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rules on the simplex against factorials, and where their exactness has to end."""
+"""Rules on the simplex against factorials, and where their exactness has to end.
+
+First what `simplex` hands out, then the two makes it chooses from.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import permutations
 from math import comb, factorial, prod
 
 import numpy as np
 import pytest
 
 from bezsoma import bernstein as bb
-from bezsoma.bernstein.quadrature import cone
+from bezsoma.arrays import Floats
+from bezsoma.bernstein.quadrature import cone, conical, symmetric
 from bezsoma.errors import InputError
 
 DIMS = [1, 2, 3]
 
 
-def mean(alpha: list[int]) -> float:
+TRIANGLES = {1: 1, 2: 3, 4: 6, 5: 7, 6: 12, 7: 15, 8: 16, 9: 19, 10: 25, 11: 28, 12: 33, 13: 37}
+TRIANGLES |= {14: 42}
+TETS = {1: 1, 2: 4, 3: 8, 5: 14, 6: 24, 7: 35, 8: 46, 9: 59, 10: 81, 11: 105}
+COUNTS = {(d, p): q for d, table in ((2, TRIANGLES), (3, TETS)) for p, q in table.items()}
+
+
+def mean(alpha: list[int]) -> Fraction:
     d = len(alpha) - 1
-    return prod(map(factorial, alpha)) * factorial(d) / factorial(sum(alpha) + d)
+    return Fraction(prod(map(factorial, alpha)) * factorial(d), factorial(sum(alpha) + d))
+
+
+def means(bary: Floats, weights: Floats, degree: int) -> Iterator[tuple[float, Fraction]]:
+    """By the rule and in truth, of each monomial."""
+    for alpha in bb.indices(degree, bary.shape[1] - 1).tolist():
+        yield float(weights @ np.prod(bary ** np.array(alpha), axis=1)), mean(alpha)
 
 
 @pytest.mark.parametrize("d", DIMS)
@@ -25,11 +44,52 @@ def mean(alpha: list[int]) -> float:
 def test_every_monomial_up_to_the_exactness(exactness: int, d: int) -> None:
     """Measured: relative errors below 5e-15 for each monomial, the smallest ones included."""
     bary, weights = bb.simplex(exactness, d)
-    assert bary.shape == ((exactness // 2 + 1) ** d, d + 1)
     for degree in {0, exactness // 2, exactness}:
-        for alpha in bb.indices(degree, d).tolist():
-            found = weights @ np.prod(bary ** np.array(alpha), axis=1)
-            assert abs(found / mean(alpha) - 1) < 1e-14
+        for found, true in means(bary, weights, degree):
+            assert abs(found - true) < 1e-15
+            assert abs(found / float(true) - 1) < 1e-14
+
+
+def test_the_table_has_so_many_points() -> None:
+    assert {key: len(weights) for key, (_, weights) in symmetric().items()} == COUNTS
+
+
+@pytest.mark.parametrize("d", DIMS)
+@pytest.mark.parametrize("exactness", range(25))
+def test_the_smallest_rule_that_is_exact_enough(exactness: int, d: int) -> None:
+    enough = [q for (dim, p), q in COUNTS.items() if dim == d and p >= exactness]
+    q = min(enough, default=(exactness // 2 + 1) ** d)
+    bary, weights = bb.simplex(exactness, d)
+    assert bary.shape == (q, d + 1)
+    assert weights.shape == (q,)
+    assert bb.simplex(exactness, d)[0] is bary
+    assert not bary.flags.writeable
+    assert not weights.flags.writeable
+
+
+@pytest.mark.parametrize(("d", "exactness"), COUNTS)
+def test_a_symmetric_rule_is_as_exact_as_its_digits(d: int, exactness: int) -> None:
+    """In fractions of the doubles; they are within 1e-16 of the true points and weights."""
+    bary, weights = (np.vectorize(Fraction)(array) for array in symmetric()[d, exactness])
+    for alpha in bb.indices(exactness, d).tolist():
+        if alpha == sorted(alpha):
+            error = weights @ np.prod(bary ** np.array(alpha), axis=1) - mean(alpha)
+            assert abs(error) < 4e-16
+
+
+@pytest.mark.parametrize(("d", "exactness"), COUNTS)
+def test_a_symmetric_rule_is_not_exact_one_degree_higher(d: int, exactness: int) -> None:
+    pairs = means(*symmetric()[d, exactness], exactness + 1)
+    assert max(abs(found / float(true) - 1) for found, true in pairs) > 1e-4
+
+
+@pytest.mark.parametrize(("d", "exactness"), COUNTS)
+def test_renumbering_the_vertices_reorders_a_symmetric_rule(d: int, exactness: int) -> None:
+    rule = np.column_stack(symmetric()[d, exactness])
+    as_is = sorted(map(tuple, rule))
+    assert len(set(as_is)) == len(as_is)
+    for order in permutations(range(d + 1)):
+        assert sorted(map(tuple, rule[:, [*order, d + 1]])) == as_is
 
 
 @pytest.mark.parametrize("d", DIMS)
@@ -52,14 +112,23 @@ def test_one_degree_more_errs_by_what_theory_says(points: int) -> None:
 
 @pytest.mark.parametrize("d", DIMS)
 @pytest.mark.parametrize("exactness", [1, 3, 5, 7])
-def test_the_exactness_is_not_exceeded(exactness: int, d: int) -> None:
+def test_the_exactness_of_a_cone_is_not_exceeded(exactness: int, d: int) -> None:
     """Gauss's k points see nothing of the polynomial that vanishes at all of them, squared."""
-    bary, weights = bb.simplex(exactness, d)
+    bary, weights = conical(exactness, d)
     t, _ = cone(exactness // 2 + 1, d)
     square = np.prod((1 - bary[:, :1] - t) ** 2, axis=1)  # of degree exactness + 1 in L_0
     assert weights @ square < 1e-30
-    fine, fine_weights = bb.simplex(exactness + 1, d)
+    fine, fine_weights = conical(exactness + 1, d)
     assert fine_weights @ np.prod((1 - fine[:, :1] - t) ** 2, axis=1) > 1e-9
+
+
+@pytest.mark.parametrize("d", DIMS)
+@pytest.mark.parametrize("exactness", range(21))
+def test_a_cone_has_any_exactness(exactness: int, d: int) -> None:
+    bary, weights = conical(exactness, d)
+    assert bary.shape == ((exactness // 2 + 1) ** d, d + 1)
+    for found, true in means(bary, weights, exactness):
+        assert abs(found / float(true) - 1) < 1e-14
 
 
 @pytest.mark.parametrize("points", [1, 2, 5, 12, 40])

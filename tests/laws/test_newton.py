@@ -232,6 +232,9 @@ def test_incompressible_bar(law: Any, force: float, solver: str) -> None:
     solution = bz.solve(body, solver=solver)
     assert abs(solution.reactions["top"].force[2] - force) < 1e-8
     assert abs(solution.volume_change) < 1e-9
+    stress = np.zeros((3, 3))
+    stress[2, 2] = 1.4 * force
+    assert np.allclose(solution.stress.at(np.full((1, 3), 0.4)), stress, atol=1e-7)
 
 
 @pytest.mark.parametrize("law", [bz.Stiffening(E, 0.45, 5.0), bz.MooneyRivlin(E, E / 3, 10 * E)])

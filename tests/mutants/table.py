@@ -75,6 +75,20 @@ PYTHON = (
         ("tests/laws/test_bernstein_quadrature.py",),
     ),
     Mutant(
+        "a symmetric rule that forgets the mirror images of its points",
+        f"{BERNSTEIN}/quadrature.py",
+        "orbit = sorted(set(permutations(point)))",
+        "orbit = sorted({(*point[i:], *point[:i]) for i in range(len(point))})",
+        ("tests/laws/test_bernstein_quadrature.py",),
+    ),
+    Mutant(
+        "the smallest rule in the table, exact enough or not",
+        f"{BERNSTEIN}/quadrature.py",
+        "if d == dim and p >= exactness]",
+        "if d == dim and p >= exactness - 1]",
+        ("tests/laws/test_bernstein_quadrature.py",),
+    ),
+    Mutant(
         "two edges of a face exchanged, so that neighbours disagree",
         f"{MESH}/control_net.py",
         "enumerate(((3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3)))",

@@ -13,11 +13,12 @@ from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.control_net import ControlNet
 
 
-def core_law(law: Law) -> _core.Law | None:
+def core_law(law: object, mixed: bool = False) -> _core.Law | None:
     """The core's law, or None for a law that is a function in Python."""
     if isinstance(law, LinearElastic):
         return _core.Law("linear", [law.kappa, law.mu])
-    found = getattr(law, "core", None)
+    found = getattr(law, "core_mixed", None) if mixed else None
+    found = getattr(law, "core", None) if found is None else found
     return found if isinstance(found, _core.Law) else None
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from bezsoma import bernstein
 from bezsoma.arrays import Floats, Ints
 from bezsoma.mechanics.body import Body
-from bezsoma.mechanics.laws import Law
+from bezsoma.mechanics.laws import Law, MixedLaw
 from bezsoma.mechanics.materials import LinearElastic, Material
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.evaluation import gradient_controls, tet_portions
@@ -49,18 +49,31 @@ def stress(body: Body, displacement: Field) -> BrokenField:
 def mixed_stress(body: Body, displacement: Field, pressure: Field | BrokenField) -> BrokenField:
     """The Cauchy stress (t, m, 3, 3) MPa of the mixed form: 2 G eps' - p I (paper, eq. 16).
 
-    G by the region of each tet. Its mean is minus the pressure, to the last bit but rounding.
+    By the law of each tet's region; its mean is minus the pressure, to rounding, where the law is
+    linear. Of other laws it is interpolated in the domain points of degree n - 1.
     """
     degree = displacement.degree - 1
     H = gradient_controls(displacement, slice(None))
+    raised = bernstein.elevation(pressure.degree, 3, degree - pressure.degree)
+    p = np.einsum("ab,tb->ta", raised, pressure.of_tet)
+    region = body.mesh.region
+    if all(law.linear for law in body.material_of_region):
+        return BrokenField(body.mesh, degree, _beside_pressure(body, H, p, region))
+    joint = np.concatenate([H, np.broadcast_to(p[..., None, None], (*p.shape, 3, 1))], axis=-1)
+    both = BrokenField(body.mesh, degree, joint)
+    return interpolated(both, lambda x: _beside_pressure(body, x[..., :3], x[..., 0, 3], region))
+
+
+def _beside_pressure(body: Body, H: Floats, p: Floats, region: Ints) -> Floats:
     found = np.empty_like(H)
     for number, law in enumerate(body.material_of_region):
-        assert isinstance(law, LinearElastic)
-        here = body.mesh.region == number
-        found[here] = law.deviatoric_stress(H[here])
-    raised = bernstein.elevation(pressure.degree, 3, degree - pressure.degree)
-    found -= np.einsum("ab,tb->ta", raised, pressure.of_tet)[..., None, None] * np.eye(3)
-    return BrokenField(body.mesh, degree, found)
+        here = region == number
+        if isinstance(law, LinearElastic):
+            found[here] = law.deviatoric_stress(H[here]) - p[here][..., None, None] * np.eye(3)
+        else:
+            assert isinstance(law, MixedLaw)  # Body refuses other laws beside a pressure
+            found[here] = _turned(law, law.mixed_stress(H[here], p[here])[0], H[here])
+    return found
 
 
 def volume_change(displacement: Field) -> float:
@@ -162,9 +175,12 @@ def _stress(body: Body, H: Floats, region: Ints) -> Floats:
 
 
 def _cauchy(law: Material, H: Floats) -> Floats:
-    """The stress of a law, from first Piola-Kirchhoff to Cauchy where it is finite: P F^T / J."""
+    return _turned(law, law.stress(H), H)
+
+
+def _turned(law: Material, P: Floats, H: Floats) -> Floats:
+    """From the stress of a law to Cauchy's: of finite laws P F^T / J."""
     if not (isinstance(law, Law) and law.finite):
-        return law.stress(H)
+        return P
     F = np.eye(3) + H
-    J = np.linalg.det(F)[..., None, None]
-    return np.asarray(law.stress(H) @ np.swapaxes(F, -1, -2) / J)
+    return np.asarray(P @ np.swapaxes(F, -1, -2) / np.linalg.det(F)[..., None, None])

@@ -134,7 +134,7 @@ def _mixed(
     method: str,
     threads: int,
 ) -> _Form:
-    problem = mixed_problem(body, equations, exactness)
+    problem = mixed_problem(body, equations, exactness, threads)
     tangent = factored(problem) if chosen == "direct" else applied(problem, threads)
 
     def pressure(x: Floats) -> Field | BrokenField:
@@ -145,7 +145,7 @@ def _mixed(
 
     return _Form(
         problem.system(tangent),
-        lambda x: problem.internal.forces(*problem.parted(x))[0],
+        lambda x: problem.fast.forces(*problem.parted(x))[0],
         lambda x: problem.internal.energy(*problem.parted(x)),
         pressure,
     )

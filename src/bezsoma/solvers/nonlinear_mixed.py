@@ -10,13 +10,16 @@ import numpy as np
 from scipy.sparse import block_diag, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
+from bezsoma import bernstein
 from bezsoma.arrays import Bools, Floats, frozen
+from bezsoma.equations.internal import core_law
 from bezsoma.equations.level import undetermined, without_mean
 from bezsoma.equations.locked import refuse_undetermined
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.mixed import pressure_mass
 from bezsoma.equations.mixed_pointwise import MixedPointwise
 from bezsoma.equations.nonlinear import NonlinearEquations
+from bezsoma.equations.pointwise_mixed import PointwiseMixed
 from bezsoma.errors import InputError, NotConverged
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import FunctionLaw, MixedLaw, shear_at_rest
@@ -40,6 +43,8 @@ class MixedProblem:
 
     equations: NonlinearEquations
     internal: MixedPointwise
+    fast: MixedPointwise | PointwiseMixed
+    """The same, compiled where the core has all the laws."""
     modes: Floats
     stiffness: Floats
     """The shear modulus of each region near rest, MPa."""
@@ -70,7 +75,7 @@ class MixedProblem:
     def balance(self, x: Floats, fraction: float) -> Balance:
         """What is out of balance: forces against forces, volumes against the volume there is."""
         u, p = self.parted(x)
-        f, g = self.internal.forces(u, p)
+        f, g = self.fast.forces(u, p)
         F, R = f.ravel(), self.equations.applied(u, fraction).ravel()
         work = max(abs(float(np.einsum("i,i->", force, u.ravel()))) for force in (F, R))
         net = self.internal.pressure_net
@@ -91,7 +96,9 @@ class MixedProblem:
         return System(self.held, parts, (1.0, self.weight), self.given, self.balance, tangent)
 
 
-def mixed_problem(body: Body, equations: NonlinearEquations, exactness: int) -> MixedProblem:
+def mixed_problem(
+    body: Body, equations: NonlinearEquations, exactness: int, threads: int
+) -> MixedProblem:
     """The problem of a body with a pressure."""
     assert body.pressure_degree is not None
     laws = tuple(beside_pressure(law) for law in body.material_of_region)
@@ -103,7 +110,17 @@ def mixed_problem(body: Body, equations: NonlinearEquations, exactness: int) -> 
     modes = undetermined(net, pressures, equations.held, soft)
     stiffness = frozen(np.array([shear_at_rest(law) for law in laws]))
     internal = MixedPointwise(net, pressures, laws, exactness)
-    return MixedProblem(equations, internal, modes, stiffness)
+    fast = _fast(internal, body, threads)
+    return MixedProblem(equations, internal, fast, modes, stiffness)
+
+
+def _fast(internal: MixedPointwise, body: Body, threads: int) -> MixedPointwise | PointwiseMixed:
+    laws = [core_law(law, mixed=True) for law in body.material_of_region]
+    known = tuple(law for law in laws if law is not None)
+    if len(known) < len(laws):
+        return internal
+    rule = bernstein.simplex(internal.exactness, 3)
+    return PointwiseMixed(internal.net, internal.pressure_net, known, *rule, threads)
 
 
 def beside_pressure(law: object) -> MixedLaw:
@@ -164,7 +181,7 @@ class AppliedMixed:
 
     def product(self, dx: Floats) -> Floats:
         """K dx (n,)."""
-        tangent = self.problem.internal.tangent(*self.problem.parted(self.x))
+        tangent = self.problem.fast.tangent(*self.problem.parted(self.x))
         f, g = tangent.apply(*self.problem.parted(dx))
         f = f.ravel()
         if self.follow is not None:

@@ -47,9 +47,7 @@ BEZSOMA_DUAL expm1(const Dual<R> &a) {
 }
 BEZSOMA_DUAL log1p(const Dual<R> &a) { return {log1p(a.v), a.d / (1 + a.v)}; }
 /// At zero, where |a| has a kink, the change is taken for zero: the mean of both sides.
-BEZSOMA_DUAL abs(const Dual<R> &a) {
-    return {abs(a.v), a.v < 0 ? -a.d : a.v > 0 ? a.d : R{}};
-}
+BEZSOMA_DUAL abs(const Dual<R> &a) { return {abs(a.v), a.v < 0 ? -a.d : a.v > 0 ? a.d : R{}}; }
 #undef BEZSOMA_DUAL
 
 template <class R> BEZSOMA_INLINE R reciprocal(const R &a) { return 1 / a; }

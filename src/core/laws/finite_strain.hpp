@@ -76,16 +76,15 @@ struct NeoHooke {
 
     template <class T, class S, class R>
     static BEZSOMA_INLINE void stress(const T *par, int, const Motion<S> &x, S *P, Watch<R> &) {
-        const S inverse = reciprocal(x.j + T(1));
-        const S shear = inverse * par[1];
-        const S volume = log1p(x.j) * inverse * (par[0] - 2 * par[1] / 3);
+        const S shear = x.inverse * par[1];
+        const S volume = log_J(x) * x.inverse * (par[0] - 2 * par[1] / 3);
         for (int k = 0; k < 9; ++k)
             P[k] = shear * x.N[k / 3][k % 3] + volume * x.cof[k / 3][k % 3];
     }
 
     template <class T, class R>
     static BEZSOMA_INLINE R energy(const T *par, int, const Motion<R> &x, Watch<R> &) {
-        const R log = log1p(x.j);
+        const R log = log_J(x);
         return (x.trace - log) * par[1] + log * log * ((par[0] - 2 * par[1] / 3) / 2);
     }
 };
@@ -109,7 +108,7 @@ struct NeoHookeIsochoric {
 
     template <class T, class S, class R>
     static BEZSOMA_INLINE void stress(const T *par, int, const Motion<S> &x, S *P, Watch<R> &) {
-        const S a = exp(log1p(x.j) * T(-5.0 / 3)) * par[1];
+        const S a = exp(log_J(x) * T(-5.0 / 3)) * par[1];
         const S b = x.trace * T(2.0 / 3);
         for (int k = 0; k < 9; ++k)
             P[k] = a * (x.N[k / 3][k % 3] - b * x.cof[k / 3][k % 3]);
@@ -117,7 +116,7 @@ struct NeoHookeIsochoric {
 
     template <class T, class R>
     static BEZSOMA_INLINE R energy(const T *par, int, const Motion<R> &x, Watch<R> &) {
-        return first_isochoric(x, log1p(x.j)) * (par[1] / 2);
+        return first_isochoric(x, log_J(x)) * (par[1] / 2);
     }
 };
 
@@ -128,7 +127,7 @@ template <class S>
 BEZSOMA_INLINE void isochoric_stress(const Motion<S> &x, const S (&E)[6], const S &I2, const S &a,
                                      const S &w1, const S &w2, S *P) {
     using T = Plain<S>;
-    const S J = x.j + T(1), first = a * reciprocal(J) * T(2), second = first * a * w2;
+    const S J = x.j + T(1), first = a * x.inverse * T(2), second = first * a * w2;
     const S shear = first * w1 + second * T(2);
     const S volume = first * w1 * x.trace * T(-2.0 / 3) - second * (x.trace + I2) * T(8.0 / 3);
     const S turned = second * J * T(2);
@@ -148,7 +147,7 @@ struct MooneyRivlin {
     static BEZSOMA_INLINE void stress(const T *par, int, const Motion<S> &x, S *P, Watch<R> &) {
         S E[6], w1 = {}, w2 = {};
         x.green(E);
-        isochoric_stress(x, E, second_invariant(E), exp(log1p(x.j) * T(-2.0 / 3)), w1 + par[1],
+        isochoric_stress(x, E, second_invariant(E), exp(log_J(x) * T(-2.0 / 3)), w1 + par[1],
                          w2 + par[2], P);
     }
 
@@ -156,7 +155,7 @@ struct MooneyRivlin {
     static BEZSOMA_INLINE R energy(const T *par, int, const Motion<R> &x, Watch<R> &) {
         R E[6];
         x.green(E);
-        const R log = log1p(x.j);
+        const R log = log_J(x);
         return first_isochoric(x, log) * par[1] +
                second_isochoric(x, second_invariant(E), log) * par[2];
     }
@@ -171,7 +170,7 @@ struct VerondaWestmann {
                                       Watch<R> &watch) {
         S E[6], w2 = {};
         x.green(E);
-        const S a = exp(log1p(x.j) * T(-2.0 / 3));
+        const S a = exp(log_J(x) * T(-2.0 / 3));
         const S first = (a - T(1)) * T(3) + a * x.trace * T(2);
         const S w1 = watched_exp(first * par[2], watch) * (par[1] * par[2]);
         isochoric_stress(x, E, second_invariant(E), a, w1, w2 + (-par[1] * par[2] / 2), P);
@@ -181,7 +180,7 @@ struct VerondaWestmann {
     static BEZSOMA_INLINE R energy(const T *par, int, const Motion<R> &x, Watch<R> &watch) {
         R E[6];
         x.green(E);
-        const R log = log1p(x.j), exponent = first_isochoric(x, log) * par[2];
+        const R log = log_J(x), exponent = first_isochoric(x, log) * par[2];
         watch.exponent(exponent);
         return expm1(exponent) * par[1] -
                second_isochoric(x, second_invariant(E), log) * (par[1] * par[2] / 2);
@@ -211,8 +210,8 @@ struct Guccione {
         S half[3][3];
         for (int k = 0; k < 3; ++k)
             for (int l = 0; l < 3; ++l)
-                half[k][l] = from[of[0][l]] * r(k, 0) + from[of[1][l]] * r(k, 1) +
-                             from[of[2][l]] * r(k, 2);
+                half[k][l] =
+                    from[of[0][l]] * r(k, 0) + from[of[1][l]] * r(k, 1) + from[of[2][l]] * r(k, 2);
         for (int c = 0; c < 6; ++c) {
             const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
             to[c] = half[k][0] * r(l, 0) + half[k][1] * r(l, 1) + half[k][2] * r(l, 2);

@@ -21,7 +21,8 @@ template <> struct Integers<double> {
     typedef long long Int;
     static constexpr int mantissa = 52;
     static constexpr double magic = 6755399441055744.0; // 1.5 2^52: adding it rounds to integers
-    static constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770e-10;
+    static constexpr double ln2_high = 6.93147180369123816490e-01,
+                            ln2_low = 1.90821492927058770e-10;
     static constexpr double least = -708, greatest = 709;
     static constexpr int exp_terms = 13, log_terms = 10;
 };
@@ -46,13 +47,14 @@ static constexpr double inverse_factorial(int n) {
     return f;
 }
 
-/// sum_{i = first}^{last} x^(i - first) / i!
+/// 1/first! + x/(first + 2)! + x^2/(first + 4)! ..., to last!. Even and odd terms of a series are
+/// summed each for itself: half as many steps wait for each other.
 template <int first, int last, class R> BEZSOMA_INLINE R exponential_tail(const R &x) {
     constexpr auto here = static_cast<Scalar<R>>(inverse_factorial(first));
-    if constexpr (first == last)
+    if constexpr (first + 2 > last)
         return R{} + here;
     else
-        return exponential_tail<first + 1, last>(x) * x + here;
+        return exponential_tail<first + 2, last>(x) * x + here;
 }
 
 /// exp(x) = 2^k (1 + tail) with |tail| < 0.42: the parts of which exp and exp - 1 are made.
@@ -71,7 +73,9 @@ template <class R> BEZSOMA_INLINE Exponential<R> exponential(R x) {
     const R one = R{} + 1;
     // The low bits of `shifted` are k; above them stands what the shift drops.
     const Int power = (Int)one + ((Int)shifted << I::mantissa);
-    return {(R)power, r * exponential_tail<1, I::exp_terms>(r)};
+    const R rr = r * r;
+    return {(R)power,
+            r * exponential_tail<1, I::exp_terms>(rr) + rr * exponential_tail<2, I::exp_terms>(rr)};
 }
 
 /// exp(x); beyond the range of numbers what it is at its end.
@@ -93,13 +97,14 @@ template <class R> BEZSOMA_INLINE R expm1_quotient(const R &x) {
     return x * x < static_cast<Scalar<R>>(1e-40) ? R{} + 1 : found;
 }
 
-/// 2 (s + s^3/3 + s^5/5 ...): the logarithm of (1 + s) / (1 - s).
-template <int i, int terms, class R> BEZSOMA_INLINE R log_tail(const R &ss) {
+/// 2/(2i+1) + 2 x/(2i+5) + 2 x^2/(2i+9) ...: every second term of 2 (s + s^3/3 + s^5/5 ...), the
+/// logarithm of (1 + s) / (1 - s), for x = s^4.
+template <int i, int terms, class R> BEZSOMA_INLINE R log_tail(const R &x) {
     constexpr auto here = static_cast<Scalar<R>>(2.0 / (2 * i + 1));
-    if constexpr (i == terms)
+    if constexpr (i + 2 > terms)
         return R{} + here;
     else
-        return log_tail<i + 1, terms>(ss) * ss + here;
+        return log_tail<i + 2, terms>(x) * x + here;
 }
 
 /// log(1 + x) without loss near zero, for x > -1; for others a number without meaning.
@@ -114,7 +119,9 @@ template <class R> BEZSOMA_INLINE R log1p(const R &x) {
     const R exponent = (R)((Int)magic + k) - magic;
     const R above = k == 0 ? x : m - 1;
     const R s = above / (above + 2);
-    return s * log_tail<0, I::log_terms>(s * s) + exponent * I::ln2_low + exponent * I::ln2_high;
+    const R ss = s * s, ssss = ss * ss;
+    const R log = s * (log_tail<0, I::log_terms>(ssss) + ss * log_tail<1, I::log_terms>(ssss));
+    return log + exponent * I::ln2_low + exponent * I::ln2_high;
 }
 
 /// Square roots of x >= 0, lane by lane: the compiler has an instruction for it.

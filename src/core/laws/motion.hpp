@@ -35,6 +35,7 @@ template <class S> struct Motion {
     S cof[3][3]; // J F^-T
     S N[3][3];   // J (F - F^-T)
     S j;         // J - 1
+    S inverse;   // 1 / J
     S trace;     // tr E, E = (H + H^T + H^T H) / 2
 
     template <class R> BEZSOMA_INLINE Motion(const S *gradient, Watch<R> &watch) {
@@ -49,9 +50,10 @@ template <class S> struct Motion {
             }
         // J = 1 + tr H + tr cof H + det H
         const S second = minor[0][0] + minor[1][1] + minor[2][2];
-        const S higher = second + H[0][0] * minor[0][0] + H[0][1] * minor[0][1] +
-                         H[0][2] * minor[0][2];
+        const S higher =
+            second + H[0][0] * minor[0][0] + H[0][1] * minor[0][1] + H[0][2] * minor[0][2];
         j = tr + higher;
+        inverse = reciprocal(j + Plain<S>(1));
         S square = H[0][0] * H[0][0];
         for (int k = 1; k < 9; ++k)
             square += H[k / 3][k % 3] * H[k / 3][k % 3];
@@ -74,8 +76,7 @@ template <class S> struct Motion {
     BEZSOMA_INLINE void green(S (&E)[6]) const {
         for (int c = 0; c < 6; ++c) {
             const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
-            E[c] = (H[k][l] + H[l][k] + H[0][k] * H[0][l] + H[1][k] * H[1][l] +
-                    H[2][k] * H[2][l]) *
+            E[c] = (H[k][l] + H[l][k] + H[0][k] * H[0][l] + H[1][k] * H[1][l] + H[2][k] * H[2][l]) *
                    half();
         }
     }
@@ -92,13 +93,13 @@ template <class S> struct Motion {
 
 /// I2(E) = ((tr E)^2 - E:E) / 2.
 template <class S> BEZSOMA_INLINE S second_invariant(const S (&E)[6]) {
-    return E[0] * E[1] + E[1] * E[2] + E[2] * E[0] -
-           (E[3] * E[3] + E[4] * E[4] + E[5] * E[5]);
+    return E[0] * E[1] + E[1] * E[2] + E[2] * E[0] - (E[3] * E[3] + E[4] * E[4] + E[5] * E[5]);
 }
 
-/// (1 + j)^e, and its change from d = e (1 + j)^e / (1 + j).
-template <class S> BEZSOMA_INLINE S power_of_J(const S &j, double e) {
-    return exp(log1p(j) * Plain<S>(e));
+/// ln J.
+template <class R> BEZSOMA_INLINE R log_J(const Motion<R> &x) { return log1p(x.j); }
+template <class R> BEZSOMA_INLINE Dual<R> log_J(const Motion<Dual<R>> &x) {
+    return {log1p(x.j.v), x.j.d * x.inverse.v};
 }
 
 } // namespace bezsoma::BEZSOMA_ISA

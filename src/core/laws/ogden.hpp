@@ -5,7 +5,8 @@
 //
 // With l_a^2 = 1 + 2 e_a, e_a and q_a the eigenvalues and eigenvectors of Green's strain,
 //
-//   S = sum_a s_a q_a q_a^T,  s_a = b_a / l_a^2,  b_a = dW/d ln l_a = sum_i mu_i (z_ia - mean_b z_ib)
+//   S = sum_a s_a q_a q_a^T,  s_a = b_a / l_a^2,  b_a = dW/d ln l_a = sum_i mu_i (z_ia - mean_b
+//   z_ib)
 //
 // and z_ia = lbar_a^alpha_i - 1. The change of S has the divided differences (s_a - s_b) /
 // (l_a^2 - l_b^2) off the diagonal of that frame (Daleckii and Krein 1965); they are formed so that
@@ -31,7 +32,8 @@ template <class I> BEZSOMA_INLINE bool any(const I &x) {
 /// Jacobi's rotations, all lanes together until the last is diagonal.
 template <class R> BEZSOMA_INLINE Eigen<R> eigen(const R (&of)[6]) {
     using T = Scalar<R>;
-    constexpr T tiny = sizeof(T) == 8 ? T(1e-300) : T(1e-36), done = sizeof(T) == 8 ? T(1e-34) : T(1e-16);
+    constexpr T tiny = sizeof(T) == 8 ? T(1e-300) : T(1e-36),
+                done = sizeof(T) == 8 ? T(1e-34) : T(1e-16);
     R a[3][3] = {{of[0], of[3], of[5]}, {of[3], of[1], of[4]}, {of[5], of[4], of[2]}};
     R v[3][3] = {};
     for (int k = 0; k < 3; ++k)
@@ -121,7 +123,8 @@ struct Ogden {
     }
 
     /// sum_ab q_a m_ab q_b^T.
-    template <class R> static BEZSOMA_INLINE void turned(const R (&v)[3][3], const R (&m)[3][3], R (&s)[6]) {
+    template <class R>
+    static BEZSOMA_INLINE void turned(const R (&v)[3][3], const R (&m)[3][3], R (&s)[6]) {
         R half[3][3];
         for (int k = 0; k < 3; ++k)
             for (int b = 0; b < 3; ++b)
@@ -132,8 +135,7 @@ struct Ogden {
         }
     }
 
-    template <class R>
-    static BEZSOMA_INLINE void second_piola(const Principal<R> &x, R (&s)[6]) {
+    template <class R> static BEZSOMA_INLINE void second_piola(const Principal<R> &x, R (&s)[6]) {
         R m[3][3] = {};
         for (int a = 0; a < 3; ++a)
             m[a][a] = x.b[a] / x.c[a];
@@ -195,15 +197,16 @@ struct Ogden {
         }
         for (int a = 0; a < 3; ++a) {
             const int b = (a + 1) % 3;
-            const R slope = difference[a] * (per_c[a] + per_c[b]) -
-                            (x.b[a] + x.b[b]) * per_c[a] * per_c[b];
+            const R slope =
+                difference[a] * (per_c[a] + per_c[b]) - (x.b[a] + x.b[b]) * per_c[a] * per_c[b];
             m[a][b] = m[b][a] = slope * six[3 + a];
         }
         turned(v, m, dS);
     }
 
     /// (z_a - z_b) / (c_a - c_b): for close stretches, with x = ln l_a - ln l_b, it is
-    /// sqrt((z_a + 1) (z_b + 1) / (c_a c_b)) alpha/2 (sinh(alpha x/2) / (alpha x/2)) / (sinh(x) / x).
+    /// sqrt((z_a + 1) (z_b + 1) / (c_a c_b)) alpha/2 (sinh(alpha x/2) / (alpha x/2)) / (sinh(x) /
+    /// x).
     template <class T, class R>
     static BEZSOMA_INLINE R quotient(const Principal<R> &x, const R (&z)[3], int a, int b,
                                      T alpha) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Laws at small strain: linear, and stiffening by exp(A s^2) with a measure s of the strain.
 //
-//   tau = g (2 mu eps' + kappa tr(eps) I),   g = exp(A s^2)            (Roth et al. 1998, eq. 22-23)
+//   tau = g (2 mu eps' + kappa tr(eps) I),   g = exp(A s^2)            (Roth et al. 1998, eq.
+//   22-23)
 //
 // with mu = G0, kappa of E0 and nu: the paper's E0 exp(A s^2) C1 eps. Mixed: kappa g tr(eps) is -p.
 // Strains come as eps_xx, eps_yy, eps_zz and the engineering shears gamma_xy, gamma_yz, gamma_zx.
