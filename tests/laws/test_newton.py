@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The nonlinear solver: it finds the same answer on every way, quickly, and says how."""
+"""The nonlinear solver: it finds the same answer on every way, quickly, and says how.
+
+Eqs. 21, 25, 26, 43, 44, 46, 49, 50 and 52 of the paper are what it solves; eq. 53 is not when it
+stops.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The paper's third part, eqs. 21 to 26 and 43 to 53: literal formulas, and figure 8 as a claim."""
+"""The paper's third part: literal formulas, and figure 8 as a claim."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ def literal(eps: np.ndarray, shears: str) -> np.ndarray:
 
 @pytest.mark.parametrize("shears", ["tensor", "engineering"])
 def test_stress_of_the_stiffening_law(shears: str) -> None:
+    """Eqs. 22, 23 and 24."""
     law = bz.Stiffening(E, NU, A, shears=shears)
     for eps in strains():
         assert np.abs(law.stress(eps) - literal(eps, shears)).max() < CLOSED_FORM * E

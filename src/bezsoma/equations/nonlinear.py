@@ -23,6 +23,8 @@ from bezsoma.mesh.control_net import ControlNet
 class NonlinearEquations:
     """F(u) = t R(u) on the free components, u = g(t) on the others, t the fraction of the load.
 
+    What is out of balance is R - F (paper, eq. 26).
+
     dead (c, 3) N are the loads that do not depend on u, `following` those that
     do; `known` says what is held at the whole load.
     """
@@ -55,7 +57,7 @@ class NonlinearEquations:
         return fraction * self.known.values
 
     def applied(self, u: Floats, fraction: float) -> Floats:
-        """The applied forces (c, 3) N."""
+        """The applied forces (c, 3) N at a step (paper, eq. 44)."""
         total = self.dead.copy()
         for pressure in self.following:
             total += pressure.forces(u)

@@ -115,7 +115,7 @@ class Pointwise:
         return f
 
     def tangent(self, u: Floats) -> ArrayTangent:
-        """The derivative of the internal forces at u."""
+        """The derivative of the internal forces at u, which the linearised step has (eq. 25)."""
         return ArrayTangent(self, u)
 
     def energy(self, u: Floats) -> float:
@@ -212,7 +212,7 @@ class ArrayTangent:
         return self.of.symmetric
 
     def apply(self, du: Floats) -> Floats:
-        """Its product (c, 3) N with du (c, 3) mm."""
+        """Its product (c, 3) N with du (c, 3) mm: the increment of the forces (paper, eq. 46)."""
         f = np.zeros_like(du)
         for law, tets in self.of.runs():
             H, dH = self.of.gradients(self.u, tets), self.of.gradients(du, tets)

@@ -20,7 +20,8 @@ def tangent_matrix(pointwise: Pointwise, u: Floats) -> csr_array[Any]:
 
         K_ai,bk = sum_q w_q V dP_ij/dH_kl dB_a/dx_j dB_b/dx_l
 
-    nine directions a point, by the law's own derivative. It is what `Pointwise.tangent` applies:
+    (paper, eq. 47, with the true tangent); nine directions a point, by the law's own derivative.
+    It is what `Pointwise.tangent` applies:
 
     >>> from bezsoma.mechanics.materials import LinearElastic
     >>> from bezsoma.mesh.control_net import ControlNet

@@ -68,7 +68,7 @@ class NeoHooke:
     """W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2; E [MPa] > 0, -1 < nu < 1/2.
 
     The simplest law that bears any strain (J. Bonet and R. D. Wood, Nonlinear Continuum Mechanics,
-    2nd ed., 2008, eq. 6.27), linear elasticity with E and nu near rest. In a Body with a pressure
+    2nd ed. (2008), eq. 6.27), linear elasticity with E and nu near rest. In a Body with a pressure
     of its own, nu = 1/2 allowed, it is W = mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2.
 
     Under pressure alone, F = l I: P = (mu (l - 1/l) + 3 lambda ln(l)/l) I.

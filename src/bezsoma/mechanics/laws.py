@@ -41,7 +41,7 @@ class Law(Material, Protocol):
         ...
 
     def derivative(self, H: Floats, dH: Floats) -> Floats:
-        """The change (..., 3, 3) MPa of the stress at H (..., 3, 3) in the direction dH."""
+        """The change (..., 3, 3) MPa of the stress at H in the direction dH (paper, eq. 48)."""
         ...
 
     def energy(self, H: Floats) -> Floats:

@@ -48,6 +48,8 @@ class StepFailed(BezSomaError):
 class Balance:
     """Applied minus internal forces r (n,), and what they are measured by.
 
+    The paper's eq. 53 measures the last correction in their place, which does not test balance.
+
     `references` has for each part of the unknowns max(|F|, |R|); `work` is max(|F . x|, |R . x|).
     """
 
@@ -210,8 +212,9 @@ def equilibrium(
 ) -> Floats:
     """The state (n,) in balance at a fraction of the load, from one in balance at less.
 
-    Each iteration solves K dx = R - F for the free components, with what is still to be moved of
-    the supports on the right, and takes the largest of 1, 1/2, 1/4, ... of dx with which no law
+    Paper, eqs. 21 and 43, by eqs. 49, 50 and 52 as corrected: each iteration solves
+    K dx = R - F for the free components, with what is still to be moved of the supports on the
+    right, and takes the largest of 1, 1/2, 1/4, ... of dx with which no law
     fails and the residual falls. It ends when residual and energy are at most `rule.rtol`.
     Raises StepFailed, with the reason.
     """
