@@ -4,8 +4,8 @@
     python experiments/face_laws.py [degree ...] > docs/verification/face_laws.md
 
 The small mesh of the lower face: the tooth-bearing part of the mandible moves 5 or 10 mm forward
-(the rami stay, the jump graded over as many mm), or the whole mandible opens by 15 degrees about its
-condyles. All laws have the same stiffness at rest, E = 15 kPa and nu = 0.45; stiffening is the
+(the rami stay, the jump graded over as many mm), or the whole mandible opens by 15 degrees about
+its condyles. All laws have the same stiffness at rest, E = 15 kPa and nu = 0.45; stiffening is the
 deviatoric measure, which has an energy (the paper's own loses ellipticity in the graded band, where
 strains near one: see docs/theory/nonlinear.md); Mooney-Rivlin is incompressible, with a pressure of
 its own. Printed is how far skin points move, and where a law
