@@ -28,15 +28,23 @@ if TYPE_CHECKING:
     from bezsoma.errors import NotConverged as NotConverged
     from bezsoma.imaging.phantom import head_phantom as head_phantom
     from bezsoma.mechanics.body import Body as Body
+    from bezsoma.mechanics.hyperelastic import Guccione as Guccione
+    from bezsoma.mechanics.hyperelastic import MooneyRivlin as MooneyRivlin
+    from bezsoma.mechanics.hyperelastic import NeoHooke as NeoHooke
+    from bezsoma.mechanics.hyperelastic import Ogden as Ogden
+    from bezsoma.mechanics.hyperelastic import StVenantKirchhoff as StVenantKirchhoff
+    from bezsoma.mechanics.hyperelastic import VerondaWestmann as VerondaWestmann
     from bezsoma.mechanics.joins import Gap as Gap
     from bezsoma.mechanics.joins import Graded as Graded
     from bezsoma.mechanics.joins import Precedence as Precedence
+    from bezsoma.mechanics.laws import FunctionLaw as FunctionLaw
     from bezsoma.mechanics.loads import BodyForce as BodyForce
     from bezsoma.mechanics.loads import PointForce as PointForce
     from bezsoma.mechanics.loads import Pressure as Pressure
     from bezsoma.mechanics.loads import Traction as Traction
     from bezsoma.mechanics.materials import LinearElastic as LinearElastic
     from bezsoma.mechanics.polynomial import Polynomial as Polynomial
+    from bezsoma.mechanics.stiffening import Stiffening as Stiffening
     from bezsoma.mechanics.supports import Fixed as Fixed
     from bezsoma.mechanics.supports import Moved as Moved
     from bezsoma.mechanics.supports import Prescribed as Prescribed
@@ -63,9 +71,19 @@ HOMES = {
     "bezsoma.errors": ["BezSomaError", "InputError", "MeshError", "MissingExtra", "NotConverged"],
     "bezsoma.imaging.phantom": ["head_phantom"],
     "bezsoma.mechanics.body": ["Body"],
+    "bezsoma.mechanics.hyperelastic": [
+        "Guccione",
+        "MooneyRivlin",
+        "NeoHooke",
+        "Ogden",
+        "StVenantKirchhoff",
+        "VerondaWestmann",
+    ],
     "bezsoma.mechanics.joins": ["Gap", "Graded", "Precedence"],
+    "bezsoma.mechanics.laws": ["FunctionLaw"],
     "bezsoma.mechanics.loads": ["BodyForce", "PointForce", "Pressure", "Traction"],
     "bezsoma.mechanics.materials": ["LinearElastic"],
+    "bezsoma.mechanics.stiffening": ["Stiffening"],
     "bezsoma.mechanics.supports": ["Fixed", "Moved", "Prescribed"],
     "bezsoma.mechanics.polynomial": ["Polynomial"],
     "bezsoma.mesh.control_net": ["ControlNet"],

@@ -25,11 +25,25 @@ class MeshError(InputError):
 
 
 class NotConverged(BezSomaError):
-    """An iteration stopped short of its tolerance; `history` holds the residual of each step."""
+    """An iteration stopped short of its tolerance; `history` holds the residual of each step.
 
-    def __init__(self, message: str, history: Sequence[float] = ()) -> None:
+    Where a load was put on in steps, `last` is the Solution of the last one that converged, and
+    `fraction` how much of the load it bears: to be looked at and written, not to be taken for the
+    answer. `path` has every iteration.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        history: Sequence[float] = (),
+        *,
+        last: Any = None,
+        fraction: float = 0.0,
+        path: Sequence[Any] = (),
+    ) -> None:
         super().__init__(message)
         self.history = tuple(history)
+        self.last, self.fraction, self.path = last, fraction, tuple(path)
 
 
 class Inadmissible(BezSomaError):

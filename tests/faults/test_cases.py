@@ -39,7 +39,7 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
     ),
     "unknown key without a near one": (
         ("nu = 0.3", "nu = 0.3\nzzz = 1"),
-        ["materials.tissue.zzz", "known here: E, G, kappa, nu", "line 12"],
+        ["materials.tissue.zzz", "known here: A, C, E, G, ", "line 12"],
     ),
     "degree is a fraction": (("degree = 2", "degree = 2.5"), ["degree:", "whole number", "2.5"]),
     "degree is a text": (

@@ -51,6 +51,41 @@ SOLVES = ("src/bezsoma/equations", "src/bezsoma/solvers", "tests/paper/test_equa
 
 PYTHON = (
     Mutant(
+        "a following pressure whose change forgets one of its two directions",
+        f"{EQUATIONS}/following.py",
+        "sides = ((spin_t, by_s, 1.0), (spin_s, by_t, -1.0))",
+        "sides = ((spin_t, by_s, 1.0), (spin_s, by_t, -0.0))",
+        ("tests/laws/test_newton.py",),
+    ),
+    Mutant(
+        "a support that turns on the straight way to its end",
+        f"{MECHANICS}/path.py",
+        "angle=fraction * support.angle",
+        "angle=support.angle",
+        ("src/bezsoma/mechanics/path.py", "tests/laws/test_newton.py"),
+    ),
+    Mutant(
+        "Cauchy stress that is not divided by J",
+        f"{EQUATIONS}/stress.py",
+        "np.swapaxes(F, -1, -2) / np.linalg.det(F)[..., None, None])",
+        "np.swapaxes(F, -1, -2))",
+        ("tests/laws/test_newton.py",),
+    ),
+    Mutant(
+        "balance judged by the correction alone",
+        f"{SOLVERS}/newton.py",
+        "not moving and residual <= rule.rtol and energy <= rule.rtol",
+        "not moving and energy <= rule.rtol",
+        ("tests/laws/test_newton.py", "tests/laws/test_paths.py"),
+    ),
+    Mutant(
+        "the secant of the stiffening law without its growth in volume",
+        f"{MECHANICS}/stiffening.py",
+        "volume = kappa_part[..., None, None] * kappa * trace",
+        "volume = kappa * trace",
+        ("tests/laws/test_material_laws.py",),
+    ),
+    Mutant(
         "the derivative of degree n without its factor n",
         f"{BERNSTEIN}/basis.py",
         "np.moveaxis(values(degree - 1, bary), -1, 0) * degree",

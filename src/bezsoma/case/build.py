@@ -30,7 +30,7 @@ def body_of(case: Case, mesh: TetMesh, degree: int) -> Body:
         body = Body(
             mesh,
             degree=degree,
-            materials={name: material.law() for name, material in file.materials.items()},
+            materials={name: material.made() for name, material in file.materials.items()},
             supports=[made(table) for table in file.support],
             loads=[made(table) for table in file.load],
             joins=[made(table) for table in file.join],
@@ -94,7 +94,7 @@ def _traction(table: schema.Traction) -> Traction:
 
 @made.register
 def _pressure(table: schema.Pressure) -> Pressure:
-    return Pressure(*table.on, value=Polynomial.parse(table.value))
+    return Pressure(*table.on, value=Polynomial.parse(table.value), following=table.following)
 
 
 @made.register

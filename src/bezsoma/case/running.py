@@ -77,7 +77,14 @@ def run_case(
     table = case.file.solver
     with in_case(case.path.name):
         solution = solve(
-            body, solver=table.method, rtol=table.rtol, threads=table.threads, progress=progress
+            body,
+            solver=table.method,
+            rtol=table.rtol,
+            threads=table.threads,
+            steps=table.steps,
+            method=table.iteration,
+            exactness=table.exactness,
+            progress=progress,
         )
     summary = summary_of(case, solution, probes)
     summary["seconds"] = perf_counter() - start

@@ -20,9 +20,11 @@ from pydantic import (
     model_validator,
 )
 
+import bezsoma.mechanics.materials
+from bezsoma.case.laws import LAW_NAMES, law_of
 from bezsoma.errors import unknown
-from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mechanics.polynomial import Polynomial
+from bezsoma.solvers.load_steps import steps_checked
 from bezsoma.view.camera import VIEWS
 
 Degree = Annotated[int, Field(ge=1, le=10)]
@@ -102,6 +104,15 @@ Fields = Annotated[
     BeforeValidator(_names),
 ]
 Views = Annotated[tuple[Annotated[str, AfterValidator(_view)], ...], BeforeValidator(_names)]
+
+
+def _steps(value: Any) -> Any:
+    """A number, a list of fractions or "auto", as `solve` takes them."""
+    steps_checked(value)
+    return _tuple(value)
+
+
+Steps = Annotated[Any, BeforeValidator(_steps)]
 Letters = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 
 
@@ -157,29 +168,37 @@ class Mesh(Table):
 
 
 class Material(Table):
-    """Linear elasticity of a region: E (MPa) and nu, or G and kappa (MPa)."""
+    """The law of a region: linear elasticity where no `law` is named; see `case.laws`."""
 
+    law: Literal[*LAW_NAMES] = "linear"  # type: ignore[valid-type]
     E: Finite | None = None
     nu: Finite | None = None
     G: Finite | None = None
-    kappa: Finite | None = None
+    kappa: Annotated[float, Field(allow_inf_nan=True)] | None = None
+    """MPa; inf is incompressible."""
+    A: Finite | None = None
+    measure: str | None = None
+    shears: str | None = None
+    c1: Finite | None = None
+    c2: Finite | None = None
+    mu: Annotated[tuple[Finite, ...], BeforeValidator(_tuple)] | None = None
+    alpha: Annotated[tuple[Finite, ...], BeforeValidator(_tuple)] | None = None
+    C: Finite | None = None
+    bf: Finite | None = None
+    bt: Finite | None = None
+    bfs: Finite | None = None
+    fibre: Point | None = None
 
     @model_validator(mode="after")
-    def _one_pair(self) -> Material:
-        given = {key for key in ("E", "nu", "G", "kappa") if getattr(self, key) is not None}
-        if given not in ({"E", "nu"}, {"G", "kappa"}):
-            raise ValueError(
-                f"give E and nu, or G and kappa, one pair; here is {sorted(given) or 'none'}"
-            )
-        self.law()
+    def _made(self) -> Material:
+        self.made()
         return self
 
-    def law(self) -> LinearElastic:
+    def made(self) -> bezsoma.mechanics.materials.Material:
         """The material itself, which checks its numbers."""
-        if self.E is not None and self.nu is not None:
-            return LinearElastic(E=self.E, nu=self.nu)
-        assert self.G is not None and self.kappa is not None
-        return LinearElastic.from_shear_bulk(G=self.G, kappa=self.kappa)
+        stated = {key: getattr(self, key) for key in type(self).model_fields if key != "law"}
+        given = {key: value for key, value in stated.items() if value is not None}
+        return law_of(self.law, given)
 
 
 class Fixed(Table):
@@ -259,6 +278,8 @@ class Pressure(Table):
     type: Literal["pressure"]
     on: Names = Field(description="the surfaces loaded")
     value: Formula = Field(description="the pressure, MPa: a number or a polynomial")
+    following: bool = False
+    """Whether it stays normal to the surface as that deforms."""
 
 
 class BodyForce(Table):
@@ -281,7 +302,11 @@ class Solver(Table):
     """How to solve."""
 
     method: Literal["auto", "direct", "multigrid", "cg", "saddle"] = "auto"
-    rtol: Annotated[float, Field(gt=0, lt=1)] = 1e-8
+    rtol: Annotated[float, Field(gt=0, lt=1)] | None = None
+    steps: Steps = "auto"
+    """Of the load, where the body is not linear: how many, their fractions, or "auto"."""
+    iteration: Literal["newton", "modified", "secant"] = "newton"
+    exactness: Annotated[int, Field(ge=0, le=40)] | None = None
     threads: Annotated[int, Field(ge=0, le=1024, description="0: all cores")] | None = None
 
 

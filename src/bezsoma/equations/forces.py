@@ -22,7 +22,9 @@ _AT_ONCE = 1 << 21
 
 
 def forces(body: Body, net: ControlNet) -> Floats:
-    """The forces (c, 3) N of all loads on the controls: int B_a t dS + int B_a f dV + P.
+    """The forces (c, 3) N of all dead loads on the controls: int B_a t dS + int B_a f dV + P.
+
+    A pressure that follows the deformation is no dead load: see `following`.
 
     Constants and polynomials are integrated in closed form, functions by quadrature of their
     stated exactness. The Bernstein polynomials sum to one, so the forces sum to the whole load:
@@ -40,7 +42,7 @@ def forces(body: Body, net: ControlNet) -> Floats:
             total[net.of_vertices(np.array([vertex_of(load, net.mesh)]))] += load.force
         elif isinstance(load, BodyForce):
             _add_volume(total, load, net)
-        else:
+        elif not (isinstance(load, Pressure) and load.following):
             for name in load.surfaces:
                 _add_surface(total, load, name, net)
     return total

@@ -15,9 +15,10 @@ import numpy as np
 from bezsoma import bernstein
 from bezsoma.arrays import Floats, Ints
 from bezsoma.mechanics.body import Body
-from bezsoma.mechanics.materials import LinearElastic
+from bezsoma.mechanics.laws import Law, MixedLaw
+from bezsoma.mechanics.materials import LinearElastic, Material
 from bezsoma.mesh.broken_field import BrokenField
-from bezsoma.mesh.evaluation import gradient_controls
+from bezsoma.mesh.evaluation import gradient_controls, tet_portions
 from bezsoma.mesh.field import Field
 
 
@@ -33,28 +34,46 @@ def strain(displacement: Field) -> BrokenField:
 def stress(body: Body, displacement: Field) -> BrokenField:
     """The Cauchy stress (t, m, 3, 3) MPa, by the law of each tet's region (paper, eqs. 4, 5).
 
-    It is taken control by control, which is exact because the law is linear: the stress of a
-    Bernstein polynomial with controls H_b is the one with controls stress(H_b).
+    It is taken control by control, which is exact where the law is linear: the stress of a
+    Bernstein polynomial with controls H_b is the one with controls stress(H_b). Of other laws it
+    is interpolated in the domain points of degree n - 1.
     """
-    H = gradient_controls(displacement, slice(None))
-    return BrokenField(body.mesh, displacement.degree - 1, _stress(body, H, body.mesh.region))
+    H = BrokenField(
+        body.mesh, displacement.degree - 1, gradient_controls(displacement, slice(None))
+    )
+    if all(law.linear for law in body.material_of_region):
+        return BrokenField(body.mesh, H.degree, _stress(body, H.controls, body.mesh.region))
+    return interpolated(H, lambda H: _stress(body, H, body.mesh.region))
 
 
 def mixed_stress(body: Body, displacement: Field, pressure: Field | BrokenField) -> BrokenField:
     """The Cauchy stress (t, m, 3, 3) MPa of the mixed form: 2 G eps' - p I (paper, eqs. 15 and 16).
 
-    G by the region of each tet. Its mean is minus the pressure, to the last bit but rounding.
+    By the law of each tet's region; its mean is minus the pressure, to rounding, where the law is
+    linear. Of other laws it is interpolated in the domain points of degree n - 1.
     """
     degree = displacement.degree - 1
     H = gradient_controls(displacement, slice(None))
+    raised = bernstein.elevation(pressure.degree, 3, degree - pressure.degree)
+    p = np.einsum("ab,tb->ta", raised, pressure.of_tet)
+    region = body.mesh.region
+    if all(law.linear for law in body.material_of_region):
+        return BrokenField(body.mesh, degree, _beside_pressure(body, H, p, region))
+    joint = np.concatenate([H, np.broadcast_to(p[..., None, None], (*p.shape, 3, 1))], axis=-1)
+    both = BrokenField(body.mesh, degree, joint)
+    return interpolated(both, lambda x: _beside_pressure(body, x[..., :3], x[..., 0, 3], region))
+
+
+def _beside_pressure(body: Body, H: Floats, p: Floats, region: Ints) -> Floats:
     found = np.empty_like(H)
     for number, law in enumerate(body.material_of_region):
-        assert isinstance(law, LinearElastic)
-        here = body.mesh.region == number
-        found[here] = law.deviatoric_stress(H[here])
-    raised = bernstein.elevation(pressure.degree, 3, degree - pressure.degree)
-    found -= np.einsum("ab,tb->ta", raised, pressure.of_tet)[..., None, None] * np.eye(3)
-    return BrokenField(body.mesh, degree, found)
+        here = region == number
+        if isinstance(law, LinearElastic):
+            found[here] = law.deviatoric_stress(H[here]) - p[here][..., None, None] * np.eye(3)
+        else:
+            assert isinstance(law, MixedLaw)  # Body refuses other laws beside a pressure
+            found[here] = _turned(law, law.mixed_stress(H[here], p[here])[0], H[here])
+    return found
 
 
 def volume_change(displacement: Field) -> float:
@@ -113,6 +132,34 @@ def interpolated(field: BrokenField, function: Callable[[Floats], Floats]) -> Br
     return BrokenField(field.mesh, n, controls)
 
 
+def swelling(body: Body, displacement: Field) -> float:
+    """The change of volume [mm3]: int (J - 1) where strains are finite, int div u where small.
+
+    J = det(I + grad u) is a polynomial of degree 3 (n - 1): the quadrature is exact.
+
+    >>> from bezsoma.mechanics import FunctionLaw
+    >>> from bezsoma.mesh import ControlNet
+    >>> from bezsoma.mesh.solids import block
+    >>> law = FunctionLaw(lambda H: H)
+    >>> doubled = Field.interpolating(ControlNet(block(), 2), lambda x: x)
+    >>> round(swelling(Body(block(), 2, law, []), doubled), 12)
+    7.0
+    """
+    finite = [isinstance(law, Law) and law.finite for law in body.material_of_region]
+    if not any(finite):
+        return volume_change(displacement)
+    bary, weights = bernstein.simplex(3 * (displacement.degree - 1), 3)
+    total, mesh = 0.0, body.mesh
+    H = BrokenField(mesh, displacement.degree - 1, gradient_controls(displacement, slice(None)))
+    for part in tet_portions(displacement, 9 * len(bary)):
+        there = H.tabulated(bary, part)
+        J = np.linalg.det(np.eye(3) + there) - 1
+        trace = np.trace(there, axis1=-2, axis2=-1)
+        chosen = np.where(np.array(finite)[mesh.region[part], None], J, trace)
+        total += float(np.einsum("tq,q,t->", chosen, weights, mesh.volumes[part]))
+    return total
+
+
 def _symmetric(H: Floats) -> Floats:
     return (H + np.swapaxes(H, -1, -2)) / 2
 
@@ -120,8 +167,20 @@ def _symmetric(H: Floats) -> Floats:
 def _stress(body: Body, H: Floats, region: Ints) -> Floats:
     laws = body.material_of_region
     if len(laws) == 1:
-        return laws[0].stress(H)
+        return _cauchy(laws[0], H)
     found = np.empty_like(H)
     for number, law in enumerate(laws):
-        found[region == number] = law.stress(H[region == number])
+        found[region == number] = _cauchy(law, H[region == number])
     return found
+
+
+def _cauchy(law: Material, H: Floats) -> Floats:
+    return _turned(law, law.stress(H), H)
+
+
+def _turned(law: Material, P: Floats, H: Floats) -> Floats:
+    """From the stress of a law to Cauchy's: of finite laws P F^T / J."""
+    if not (isinstance(law, Law) and law.finite):
+        return P
+    F = np.eye(3) + H
+    return np.asarray(P @ np.swapaxes(F, -1, -2) / np.linalg.det(F)[..., None, None])

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -12,6 +13,7 @@ import numpy as np
 
 from bezsoma.errors import InputError, unknown
 from bezsoma.mechanics.joins import Gap, Graded, Join, Precedence
+from bezsoma.mechanics.laws import FunctionLaw, MixedLaw
 from bezsoma.mechanics.loads import BodyForce, Load, PointForce, Pressure, Traction, load_checked
 from bezsoma.mechanics.materials import LinearElastic, Material
 from bezsoma.mechanics.meeting import joins_checked
@@ -108,17 +110,30 @@ def _pressure_degree(body: Body) -> int | None:
 def _form_checked(body: Body) -> None:
     """Refuse a material that the displacement form, or the mixed one, cannot take."""
     for region, law in zip(body.mesh.regions, body.material_of_region, strict=True):
-        if body.mixed and not isinstance(law, LinearElastic):
+        if body.mixed and not (isinstance(law, LinearElastic) or _splits(law)):
             raise InputError(
-                f"region {region!r} is {law!r}; a pressure of its own goes with linear elasticity "
-                "so far: give LinearElastic(E=..., nu=...), or leave pressure_degree out"
+                f"region {region!r} is {law!r}, which does not split into a shape and a volume and "
+                "cannot stand beside a pressure; leave pressure_degree out, or take another law "
+                "(Stiffening with measure='deviatoric', NeoHooke, MooneyRivlin, ...)"
             )
-        if not body.mixed and isinstance(law, LinearElastic) and law.incompressible:
+        if not body.mixed and _incompressible(law):
             raise InputError(
                 f"region {region!r} has nu = 1/2: volume cannot change there, and the displacement "
                 "alone does not give the stress; give the pressure a degree of its own, "
                 f"{_with_pressure(body.degree)}, or take nu up to 0.49 or so"
             )
+
+
+def _splits(law: Material) -> bool:
+    """Whether a law has a form beside a pressure."""
+    if isinstance(law, FunctionLaw):
+        return law.kappa is not None
+    return isinstance(law, MixedLaw) and getattr(law, "measure", "") != "energy"
+
+
+def _incompressible(law: Material) -> bool:
+    """Whether the displacement alone does not give the stress: nu = 1/2, or kappa = inf."""
+    return getattr(law, "nu", 0.0) == 0.5 or getattr(law, "kappa", 0.0) == math.inf
 
 
 def _with_pressure(degree: int) -> str:

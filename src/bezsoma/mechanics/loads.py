@@ -50,8 +50,10 @@ class Traction:
 class Pressure:
     """Pressure p on surfaces [MPa], traction t = -p n with n outward: positive pushes inward.
 
-    One number, a polynomial of one component, or a function giving (p,) or (p, 1). The normal is
-    that of the flat facets; it does not follow the deformation.
+    One number, a polynomial of one component, or a function giving (p,) or (p, 1), of the point
+    before it moved. The normal and the area are those of the flat facets before the deformation;
+    with following=True they are those of the deformed surface, as of a fluid that pushes: the
+    load then depends on the displacement, and `solve` iterates.
 
     >>> Pressure("inner", value=0.01).surfaces
     ('inner',)
@@ -60,15 +62,27 @@ class Pressure:
     surfaces: tuple[str, ...]
     value: Given
     exactness: int | None = None
+    following: bool = False
 
-    def __init__(self, *surfaces: str, value: Value | Given, exactness: int | None = None) -> None:
+    def __init__(
+        self,
+        *surfaces: str,
+        value: Value | Given,
+        exactness: int | None = None,
+        following: bool = False,
+    ) -> None:
         object.__setattr__(self, "surfaces", names(surfaces, "Pressure"))
         what = f"the pressure on {', '.join(map(repr, surfaces))}, MPa"
         object.__setattr__(self, "value", given(value, 1, what))
         object.__setattr__(self, "exactness", exactness_checked(exactness, "Pressure"))
+        if not isinstance(following, bool):
+            raise InputError(f"following={following!r} of Pressure: it must be True or False")
+        object.__setattr__(self, "following", following)
 
     def __repr__(self) -> str:
-        return as_called("Pressure", *self.surfaces, value=self.value, exactness=self.exactness)
+        following = True if self.following else None
+        stated = {"exactness": self.exactness, "following": following}
+        return as_called("Pressure", *self.surfaces, value=self.value, **stated)
 
 
 @dataclass(frozen=True, init=False, eq=False)

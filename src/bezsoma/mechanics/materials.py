@@ -221,3 +221,16 @@ class LinearElastic:
         mean = np.trace(strain, axis1=-2, axis2=-1)[..., None, None] / 3
         deviatoric: Floats = 2 * self.mu * (strain - mean * np.eye(3))
         return deviatoric
+
+    @property
+    def finite(self) -> bool:
+        """False: the strain is small."""
+        return False
+
+    def derivative(self, H: Floats, dH: Floats) -> Floats:
+        """The change of the stress in the direction dH, the same at every H, MPa."""
+        return self.stress(dH)
+
+    def energy(self, H: Floats) -> Floats:
+        """The stored energy tau : eps / 2 (...) N/mm2."""
+        return np.asarray(np.einsum("...ij,...ij->...", self.stress(H), H) / 2)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib.metadata import version
 from typing import Any
@@ -23,6 +23,7 @@ from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.evaluation import tet_portions
 from bezsoma.mesh.field import Field
+from bezsoma.solvers.newton import Iteration
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +47,8 @@ class Solution:
     `pressure` [MPa], positive in compression, is there where the body has one of its own: a
     continuous Field, or one that breaks between regions. `level` says what determines its level,
     `held_tets` counts tets all four vertices of which are prescribed (see `unlocked`). `advice`
-    is what another form would do better; often nothing.
+    is what another form would do better; often nothing. Where the body is not linear, `path` has
+    every iteration of the load steps.
     """
 
     body: Body
@@ -64,6 +66,7 @@ class Solution:
     level: str = ""
     held_tets: int = 0
     advice: str = ""
+    path: tuple[Iteration, ...] = ()
 
     def __repr__(self) -> str:
         return (
@@ -173,6 +176,7 @@ class Solution:
             "iterations": self.iterations,
             "residual": self.residual,
             "history": list(self.history),
+            **({"steps": [asdict(each) for each in self.path]} if self.path else {}),
             "energy": self.energy,
             "volume_change": self.volume_change,
             "reactions": {

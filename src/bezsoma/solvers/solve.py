@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -26,10 +27,12 @@ from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_chole
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.mixed import advice, mixed_solution
 from bezsoma.solvers.multigrid import multigrid
+from bezsoma.solvers.nonlinear import Loading, is_linear, nonlinear_solution
 from bezsoma.solvers.solution import Solution, reactions
 from bezsoma.solvers.watch import Progress, Watch, in_range
 
 MOST_THREADS = 1024
+Steps = int | str | Sequence[float]
 SOLVERS = ("auto", "direct", "multigrid", "cg", "saddle")
 DIRECT_UP_TO = 3000
 """Unknowns up to which the direct solver is chosen: above, multigrid is ahead at every degree."""
@@ -39,8 +42,11 @@ def solve(
     body: Body,
     *,
     solver: str = "auto",
-    rtol: float = 1e-8,
+    rtol: float | None = None,
     threads: int | None = None,
+    steps: Steps = "auto",
+    method: str = "newton",
+    exactness: int | None = None,
     progress: Progress | None = None,
 ) -> Solution:
     """The displacement of a body at rest [mm], and what follows from it: see `Solution`.
@@ -72,18 +78,33 @@ def solve(
             `DIRECT_UP_TO` unknowns, multigrid above. With a pressure: "direct", "saddle" (without
             a matrix, preconditioned), or "auto".
         rtol: what the Euclidean norm of the residual over the free components has to come down
-            to, relative to that at zero free displacement.
+            to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
+            for others relative to the larger of internal and applied forces, the work of the
+            residual likewise, 1e-10 where not given.
         threads: how many; None takes the environment's BEZSOMA_THREADS, or all cores. The answer
             of every solver but SuperLU's own arithmetic has the same bits for any number.
+        steps: for a body that is not linear, in how many steps the load is put on: a number, the
+            fractions of the load ending with 1, or "auto": the whole at once, halved where no
+            equilibrium is found, and longer again where it is found soon.
+        method: for a body that is not linear, "newton", "modified" (the tangent at the start of
+            each step is kept) or "secant" (the paper's eq. 51, for the stiffening laws).
+        exactness: up to which degree the quadrature of laws that are not linear is exact; 2 n + 2,
+            and at least 6, where not given.
         progress: called with a stage, how much of it is done, and a note.
 
     Raises:
         InputError: supports that disagree, or leave rigid motions (named), and the like.
-        NotConverged: with the history of the residual, and what to try.
+        NotConverged: with the history of the residual, and what to try; where a load was put on
+            in steps, with the last state in balance.
     """
+    loading = Loading(steps, method, exactness)
+    linear = not isinstance(body, Body) or is_linear(body)
+    rtol = (1e-8 if linear else 1e-10) if rtol is None else rtol
     _check(body, solver, rtol)
     watch = Watch(progress)
     number = _threads(threads)
+    if not linear:
+        return nonlinear_solution(body, solver, rtol, number, loading, watch)
     if body.mixed:
         return mixed_solution(body, solver, rtol, number, watch)
     chosen, why, equations = _equations(body, solver, number, watch)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The steps in which a load is put on: one, many, given, or as they come."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from bezsoma.arrays import Floats
+from bezsoma.errors import InputError
+from bezsoma.solvers.newton import Iteration, Rule, StepFailed, System, equilibrium
+
+SHORTEST = 2.0**-10
+"""A load step of less than a thousandth of the load is given up."""
+FEW = 6
+"""A step that took no more iterations than this lets the next one be twice as long."""
+
+Told = Callable[[Iteration], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Reached:
+    """The last state x (n,) in balance, its fraction of the load, and every iteration.
+
+    Where the fraction is below 1, `tried` is the fraction that failed in the end, and `why`.
+    """
+
+    x: Floats
+    fraction: float
+    path: tuple[Iteration, ...]
+    tried: float = 1.0
+    why: str = ""
+
+
+def steps_checked(steps: Any) -> tuple[float, ...] | None:
+    """The fractions of the load, ending with 1; None for "auto".
+
+    >>> steps_checked(4), steps_checked([0.1, 1]), steps_checked("auto")
+    ((0.25, 0.5, 0.75, 1.0), (0.1, 1.0), None)
+    """
+    if isinstance(steps, str) and steps == "auto":
+        return None
+    if isinstance(steps, int | np.integer) and not isinstance(steps, bool):
+        if steps < 1:
+            raise InputError(
+                f"steps = {steps}: a load is put on in one step or more; steps='auto' finds how "
+                "many"
+            )
+        return tuple((i + 1) / int(steps) for i in range(int(steps)))
+    fractions = _fractions(steps)
+    if not fractions or fractions[-1] != 1 or any(a >= b for a, b in _pairs(fractions)):
+        raise InputError(
+            f"steps = {steps!r}: give how many, or the fractions of the load in ascending order, "
+            "above 0 and ending with 1, as [0.1, 0.4, 1]; 'auto' finds them"
+        )
+    return fractions
+
+
+def _fractions(steps: Any) -> tuple[float, ...]:
+    try:
+        return () if isinstance(steps, str) else tuple(float(each) for each in steps)
+    except (TypeError, ValueError):
+        return ()
+
+
+def _pairs(fractions: Sequence[float]) -> zip[tuple[float, float]]:
+    return zip((0.0, *fractions), fractions, strict=False)
+
+
+def loaded(
+    system: System, x: Floats, steps: tuple[float, ...] | None, rule: Rule, tell: Told
+) -> Reached:
+    """The state under the whole load, from x (n,) at rest, or the last that could be reached.
+
+    Given steps are taken as they are. Without them the whole load is tried first; a step that
+    fails is halved, and one that took few iterations lets the next be twice as long.
+    """
+    path: list[Iteration] = []
+
+    def record(iteration: Iteration) -> None:
+        path.append(iteration)
+        tell(iteration)
+
+    fraction, length, number = 0.0, 1.0, 1
+    while fraction < 1:
+        target = _next(fraction, length, steps)
+        before = len(path)
+        try:
+            x = equilibrium(system, x, target, number, rule, record)
+        except StepFailed as failure:
+            length /= 2
+            if steps is not None or length < SHORTEST:
+                return Reached(x, fraction, tuple(path), target, str(failure))
+        else:
+            fraction = target
+            number += 1
+            if len(path) - before <= FEW:
+                length *= 2
+    return Reached(x, 1.0, tuple(path))
+
+
+def _next(fraction: float, length: float, steps: tuple[float, ...] | None) -> float:
+    if steps is None:
+        return 1.0 if fraction + length > 1 - SHORTEST / 2 else fraction + length
+    return next(each for each in steps if each > fraction)

@@ -1,0 +1,312 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Newton's iteration, its two cheaper cousins, and the steps in which a load is put on.
+
+Written over flat unknowns x (n,), so that a displacement alone and a displacement with a pressure
+are the same to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from bezsoma.arrays import Bools, Floats
+from bezsoma.errors import BezSomaError, Inadmissible
+
+HALVINGS = 12
+"""A correction shorter than 2^-12 of itself leads nowhere."""
+SUFFICIENT = 1e-4
+"""The part of the promised decrease of the residual that a step has to bring (Armijo)."""
+LOOSEST = 0.02
+"""Linear solves stop at this part of the residual at the latest (S. C. Eisenstat and H. F. Walker,
+SIAM J. Sci. Comput. 17, 1996, doi:10.1137/0917003, choice 2 with gamma = 0.9, alpha = 2)."""
+TIGHTEST = 1e-12
+FIRST = 1e-5
+"""How exactly the way of the free part is found when supports move: what is left of their jump
+strains one layer of tets, and costs more iterations than it saves."""
+SHORT = 0.25
+LEAVE = 6
+GROWTH = 1e6
+"""No whole step may let the residual grow by more."""
+FLOOR = 1e-3
+"""Where a body is carried along unstrained all forces are rounding: the residual is then measured
+by this part of what it was when the supports had moved and nothing else."""
+
+
+class Breakdown(BezSomaError):
+    """A linear solve failed: the message says how."""
+
+
+class StepFailed(BezSomaError):
+    """Equilibrium was not found at a fraction of the load: the message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Applied minus internal forces r (n,), and what they are measured by.
+
+    The paper's eq. 53 measures the last correction in their place, which does not test balance.
+
+    `references` has for each part of the unknowns max(|F|, |R|); `work` is max(|F . x|, |R . x|).
+    """
+
+    r: Floats
+    references: tuple[float, ...]
+    work: float
+
+
+class Linearised(Protocol):
+    """The tangent at a state."""
+
+    def product(self, dx: Floats) -> Floats:
+        """K dx (n,)."""
+        ...
+
+    def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
+        """Free dx (n,) with |b - K dx| <= rtol |b|, and the iterations; raises Breakdown."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """What Newton has to know: F(x) = t R(x) where free, x = g(t) where held.
+
+    `parts` are the slices of x whose residuals are judged each by itself, u and p; `weights` what
+    each counts in the sum that the line search brings down.
+    """
+
+    held: Bools
+    parts: tuple[slice, ...]
+    weights: tuple[float, ...]
+    given: Callable[[float], Floats]
+    balance: Callable[[Floats, float], Balance]
+    tangent: Callable[[Floats, float], Linearised]
+
+
+@dataclass(frozen=True)
+class Iteration:
+    """One iteration: the load step and its fraction of the load, and how far it came.
+
+    `residual` is max over u and p of |R - F| / max(|F|, |R|) after it, over the free components;
+    `energy` |(R - F) . dx| relative to the work of the forces; `factor` the part of the correction
+    that was taken; `linear` how many iterations the linear solve took (1: direct).
+    """
+
+    step: int
+    fraction: float
+    residual: float
+    energy: float
+    factor: float
+    linear: int
+
+
+@dataclass
+class _Watchdog:
+    """Leave to go uphill for a while.
+
+    Where a thin body bends, full corrections stretch it first and put that right in the next
+    iteration: a residual that has to fall each time would creep. After two short steps the next
+    `LEAVE` are taken whole; what has not come below where it began by then is taken back, and
+    that was the last time (R. M. Chamberlain et al., Math. Program. Study 16, 1982,
+    doi:10.1007/BFb0120945).
+    """
+
+    short: int = 0
+    left: int = 0
+    bites: bool = False
+    x: Floats = field(default_factory=lambda: np.zeros(0))
+    balance: Balance | None = None
+    size: float = np.inf
+
+    @property
+    def free(self) -> bool:
+        """Whether the residual may grow now."""
+        return self.left > 0
+
+    def seen(
+        self, factor: float, x: Floats, balance: Balance, size: float
+    ) -> tuple[Floats, Balance]:
+        """Where to go on after a step of that factor."""
+        if not self.free:
+            self.short = self.short + 1 if factor <= SHORT else 0
+            if self.short == 2 and not self.bites:
+                self.left, self.x, self.balance, self.size = LEAVE, x, balance, size
+            return x, balance
+        self.left -= 1
+        if size < self.size:
+            self.left = self.short = 0
+        elif not self.left:
+            return self.back()
+        return x, balance
+
+    def back(self) -> tuple[Floats, Balance]:
+        """Where the leave began."""
+        assert self.balance is not None
+        self.left, self.bites = 0, True
+        return self.x, self.balance
+
+
+Record = Callable[[Iteration], None]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """How to iterate: `renew` the tangent in each iteration or keep it for the step."""
+
+    rtol: float
+    renew: bool = True
+    most: int = 40
+
+
+@dataclass
+class _Step:
+    """One load step under way."""
+
+    system: System
+    fraction: float
+    number: int
+    rule: Rule
+    record: Record
+    floor: tuple[float, ...] = ()
+    refused: str = ""
+    """Why the last state that could not be was refused."""
+
+    def free(self, r: Floats) -> Floats:
+        return np.where(self.system.held, 0.0, r)
+
+    def merit(self, r: Floats) -> float:
+        """The weighted length of a residual over what is free."""
+        free = self.free(r)
+        parts = zip(self.system.parts, self.system.weights, strict=True)
+        return extent(np.array([w * extent(free[part]) for part, w in parts]))
+
+    def relative(self, balance: Balance) -> float:
+        """The largest of the relative residuals of the parts."""
+        free, worst = self.free(balance.r), 0.0
+        floor = self.floor or (0.0,) * len(self.system.parts)
+        for part, size, least in zip(self.system.parts, balance.references, floor, strict=True):
+            length = extent(free[part])
+            if length > 0:
+                worst = max(worst, length / max(size, least, np.finfo(float).tiny))
+        return worst
+
+
+def extent(x: Floats) -> float:
+    """The Euclidean norm of x (n,), also where squares would overflow; no BLAS, see `krylov.dot`.
+
+    >>> float(round(extent(np.array([3e200, 4e200])) / 1e200, 12))
+    5.0
+    """
+    size = float(np.abs(x).max(initial=0.0))
+    if size == 0 or not np.isfinite(size):
+        return size
+    scaled = x / size
+    return float(size * np.sqrt(np.einsum("i,i->", scaled, scaled)))
+
+
+def equilibrium(
+    system: System, x: Floats, fraction: float, number: int, rule: Rule, record: Record
+) -> Floats:
+    """The state (n,) in balance at a fraction of the load, from one in balance at less.
+
+    Paper, eqs. 21 and 43, by eqs. 49, 50 and 52 as corrected: each iteration solves
+    K dx = R - F for the free components, with what is still to be moved of the supports on the
+    right, and takes the largest of 1, 1/2, 1/4, ... of dx with which no law
+    fails and the residual falls. It ends when residual and energy are at most `rule.rtol`.
+    Raises StepFailed, with the reason.
+    """
+    step = _Step(system, fraction, number, rule, record)
+    goal = system.given(fraction)
+    balance = system.balance(x, fraction)
+    energy, tangent, before = 0.0, None, np.inf
+    watchdog = _Watchdog()
+    for count in range(rule.most + 1):
+        jump = np.where(system.held, goal - x, 0.0)
+        moving = bool(jump.any())
+        residual = step.relative(balance)
+        if not moving and residual <= rule.rtol and energy <= rule.rtol:
+            return x
+        if count == rule.most:
+            break
+        if tangent is None or rule.renew:
+            tangent = system.tangent(x, fraction)
+        b = step.free(balance.r - tangent.product(jump) if moving else balance.r)
+        if moving:
+            step.floor = tuple(FLOOR * extent(b[part]) for part in system.parts)
+        eta = FIRST if moving else _forcing(step, b, balance, before)
+        before = step.merit(b)
+        try:
+            dx, linear = tangent.solve(b, eta)
+        except Breakdown as failure:
+            raise StepFailed(str(failure)) from failure
+        dx += jump
+        try:
+            factor, x, balance = _searched(step, x, dx, b, moving, watchdog.free)
+        except StepFailed:
+            if not watchdog.free:
+                raise
+            x, balance = watchdog.back()
+            continue
+        energy = _energy(step, balance, dx)
+        record(Iteration(number, fraction, step.relative(balance), energy, factor, linear))
+        if not moving:
+            x, balance = watchdog.seen(factor, x, balance, step.merit(balance.r))
+    raise StepFailed(
+        f"{rule.most} iterations leave a residual of {residual:.3g} and an energy of {energy:.3g}, "
+        f"{rule.rtol:g} were asked for" + (f"; refused was {step.refused}" if step.refused else "")
+    )
+
+
+def _forcing(step: _Step, b: Floats, balance: Balance, before: float) -> float:
+    """How exactly to solve: as the residual has fallen, and no better than is asked for."""
+    now = step.merit(b)
+    target = (
+        0.2
+        * step.rule.rtol
+        * min(
+            w * max(size, least)
+            for w, size, least in zip(
+                step.system.weights,
+                balance.references,
+                step.floor or (0.0,) * len(balance.references),
+                strict=True,
+            )
+        )
+    )
+    fallen = 0.9 * (now / before) ** 2 if np.isfinite(before) and before > 0 else LOOSEST
+    enough = target / now if now > 0 else LOOSEST
+    return float(min(LOOSEST, max(fallen, enough, TIGHTEST)))
+
+
+def _energy(step: _Step, balance: Balance, dx: Floats) -> float:
+    product = abs(float(np.einsum("i,i->", step.free(balance.r), dx)))
+    return product / max(balance.work, np.finfo(float).tiny) if product else 0.0
+
+
+def _searched(
+    step: _Step, x: Floats, dx: Floats, b: Floats, moving: bool, free: bool
+) -> tuple[float, Floats, Balance]:
+    """The part of dx that is taken, the state there and its balance."""
+    start, factor = step.merit(b), 1.0
+    rounding = 1e-14 * max(start, 1e-300)
+    why = "the residual does not fall along the correction"
+    for _ in range(HALVINGS):
+        there = x + factor * dx
+        if moving and factor == 1:
+            there = np.where(step.system.held, step.system.given(step.fraction), there)
+        try:
+            balance = step.system.balance(there, step.fraction)
+        except Inadmissible as failure:
+            why = step.refused = str(failure)
+        else:
+            size = step.merit(balance.r)
+            allowed = 1.0 if moving else GROWTH if free else 1 - SUFFICIENT * factor
+            falls = size <= allowed * start + rounding
+            if falls or step.relative(balance) <= step.rule.rtol:
+                return factor, there, balance
+            why = "the residual does not fall along the correction"
+        factor /= 2
+    raise StepFailed(why)

@@ -1,0 +1,293 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A body whose law or load is not linear, from its statement to its solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from bezsoma.arrays import Floats, frozen
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.internal import internal_forces
+from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.nonlinear import NonlinearEquations, nonlinear_equations
+from bezsoma.equations.pointwise import Internal, Pointwise
+from bezsoma.equations.rigid import refuse_rigid_motions
+from bezsoma.equations.stress import swelling
+from bezsoma.errors import InputError, NotConverged, unknown
+from bezsoma.mechanics.body import Body
+from bezsoma.mechanics.laws import Law, Secant, at_rest
+from bezsoma.mechanics.loads import Pressure, exactness_checked
+from bezsoma.mechanics.path import body_at
+from bezsoma.mesh.broken_field import BrokenField
+from bezsoma.mesh.control_net import ControlNet
+from bezsoma.mesh.field import Field
+from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
+from bezsoma.solvers.multigrid import preconditioner
+from bezsoma.solvers.newton import Balance, Iteration, Rule, System, extent
+from bezsoma.solvers.nonlinear_mixed import applied, factored, level, mixed_problem
+from bezsoma.solvers.solution import Solution, resultants
+from bezsoma.solvers.tangents import Precondition, applied_tangents, factored_tangents
+from bezsoma.solvers.watch import Watch
+
+METHODS = {"newton": (True, 40), "modified": (False, 200), "secant": (True, 500)}
+"""Whether the tangent is formed anew in each iteration, and how many there may be."""
+SOLVERS = ("auto", "direct", "multigrid")
+
+
+@dataclass(frozen=True)
+class Loading:
+    """How a load is put on, checked: see `solve`."""
+
+    steps: Any = "auto"
+    method: str = "newton"
+    exactness: int | None = None
+
+    def __post_init__(self) -> None:
+        steps_checked(self.steps)
+        if self.method not in METHODS:
+            raise InputError(unknown("method", self.method, METHODS, "solve()"))
+        exactness_checked(self.exactness, "solve()")
+
+    def exactness_for(self, degree: int) -> int:
+        """The exactness of the quadrature of laws: as given, or 2 n + 2 and at least 6.
+
+        >>> Loading().exactness_for(1), Loading().exactness_for(3), Loading(exactness=9).exactness
+        (6, 8, 9)
+        """
+        return max(2 * degree + 2, 6) if self.exactness is None else self.exactness
+
+
+def is_linear(body: Body) -> bool:
+    """Whether all laws are linear and no load follows: then one linear solve is the answer."""
+    follows = any(isinstance(load, Pressure) and load.following for load in body.loads)
+    return not follows and all(law.linear for law in body.material_of_region)
+
+
+def nonlinear_solution(
+    body: Body, solver: str, rtol: float, threads: int, loading: Loading, watch: Watch
+) -> Solution:
+    """The displacement of a body of any laws, and what follows from it: see `solve`."""
+    exactness = loading.exactness_for(body.degree)
+    rule, steps = Rule(rtol, *METHODS[loading.method]), steps_checked(loading.steps)
+    if body.mixed and loading.method == "secant":
+        raise InputError("method='secant' is for a displacement alone; take 'newton'")
+    with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
+        net = ControlNet(body.mesh, body.degree)
+    with watch.stage("supports", f"{3 * net.count} unknowns"):
+        known = prescribed(body, net)
+        refuse_rigid_motions(net, known.mask)
+    chosen = _choice(int(known.mask.size - known.mask.sum()), solver)
+    with watch.stage("equations", f"{len(body.loads)} loads, {chosen}"):
+        equations = nonlinear_equations(body, net, known)
+        form = (_mixed if body.mixed else _plain)(
+            body, equations, exactness, chosen, loading.method, threads
+        )
+    with watch.stage("solving", f"{loading.method}, {chosen}"):
+        reached = loaded(form.system, np.zeros(len(form.system.held)), steps, rule, _teller(watch))
+    how = f"{_NAMES[loading.method]}, {_SOLVES[chosen]}"
+    with watch.stage("reactions", "and energy"):
+        solution = _solution(equations, form, reached, how, dict(watch.timings))
+    if reached.fraction < 1:
+        raise _unreached(reached, solution)
+    return solution
+
+
+@dataclass(frozen=True, eq=False)
+class _Form:
+    """One form of the equations: what Newton iterates on, and what its answer means."""
+
+    system: System
+    pull: Callable[[Floats], Floats]
+    energy: Callable[[Floats], float]
+    pressure: Callable[[Floats], Field | BrokenField | None]
+
+
+def _plain(
+    body: Body,
+    equations: NonlinearEquations,
+    exactness: int,
+    chosen: str,
+    method: str,
+    threads: int,
+) -> _Form:
+    laws = _laws(body)
+    internal = internal_forces(equations.net, laws, exactness, threads)
+    pointwise = Pointwise(equations.net, laws, exactness)
+    system = _system(equations, internal, pointwise, chosen, method, threads)
+    return _Form(
+        system,
+        lambda x: internal.forces(x.reshape(-1, 3)),
+        lambda x: pointwise.energy(x.reshape(-1, 3)),
+        lambda x: None,
+    )
+
+
+def _mixed(
+    body: Body,
+    equations: NonlinearEquations,
+    exactness: int,
+    chosen: str,
+    method: str,
+    threads: int,
+) -> _Form:
+    problem = mixed_problem(body, equations, exactness, threads)
+    tangent = factored(problem) if chosen == "direct" else applied(problem, threads)
+
+    def pressure(x: Floats) -> Field | BrokenField:
+        p, net = frozen(level(problem, problem.parted(x)[1])), problem.internal.pressure_net
+        if net.mesh is body.mesh:
+            return Field(net, p)
+        return BrokenField(body.mesh, net.degree, frozen(p[net.of_tet]))
+
+    return _Form(
+        problem.system(tangent),
+        lambda x: problem.fast.forces(*problem.parted(x))[0],
+        lambda x: problem.internal.energy(*problem.parted(x)),
+        pressure,
+    )
+
+
+_NAMES = {
+    "newton": "Newton with line search",
+    "modified": "modified Newton with line search",
+    "secant": "the secant iteration (paper, eq. 51) with line search",
+}
+_SOLVES = {
+    "direct": "tangents factored (SuperLU)",
+    "multigrid": "tangents applied, preconditioned by the linear law's blocks and multigrid",
+}
+DIRECT_UP_TO = 3000
+
+
+def _choice(free: int, solver: str) -> str:
+    if solver not in SOLVERS:
+        raise InputError(
+            f"solver={solver!r} serves linear bodies only; for other laws and for pressures that "
+            "follow take 'direct', 'multigrid' or 'auto'"
+        )
+    if solver != "auto":
+        return solver
+    return "direct" if free <= DIRECT_UP_TO else "multigrid"
+
+
+def _laws(body: Body) -> tuple[Law, ...]:
+    for region, law in zip(body.mesh.regions, body.material_of_region, strict=True):
+        if not isinstance(law, Law):
+            raise InputError(
+                f"region {region!r} is {law!r}, which has no derivative and energy as a law needs "
+                "(see FunctionLaw)"
+            )
+    return tuple(law for law in body.material_of_region if isinstance(law, Law))
+
+
+def _system(
+    equations: NonlinearEquations,
+    internal: Internal,
+    pointwise: Pointwise,
+    chosen: str,
+    method: str,
+    threads: int,
+) -> System:
+    if method == "secant":
+        pointwise = replace(pointwise, laws=tuple(Secant(law) for law in pointwise.laws))
+    held = equations.held.ravel()
+    if chosen == "direct":
+        tangent = factored_tangents(equations, pointwise)
+    else:
+        at_u = _preconditioner(equations, pointwise, threads)
+        tangents: Internal = pointwise if method == "secant" else internal
+        symmetric = tangents.symmetric and not equations.following
+        tangent = applied_tangents(equations, tangents.tangent, at_u, symmetric)
+    return System(
+        held,
+        (slice(0, len(held)),),
+        (1.0,),
+        lambda fraction: equations.given(fraction).ravel(),
+        lambda x, fraction: _balance(equations, internal, x, fraction),
+        tangent,
+    )
+
+
+def _preconditioner(
+    equations: NonlinearEquations, pointwise: Pointwise, threads: int
+) -> Precondition:
+    """The preconditioner of the linear laws that the laws are near rest; never built anew."""
+    lame = frozen(np.array([at_rest(law) for law in pointwise.laws]))
+    operator = MatrixFree(equations.net, lame, threads)
+    blocks = preconditioner(operator, equations.held)
+
+    def apply(r: Floats) -> Floats:
+        z = np.empty_like(r)
+        blocks.apply(np.ascontiguousarray(r), z)
+        return z
+
+    return apply
+
+
+def _balance(
+    equations: NonlinearEquations, internal: Internal, x: Floats, fraction: float
+) -> Balance:
+    u = x.reshape(-1, 3)
+    F, R = internal.forces(u).ravel(), equations.applied(u, fraction).ravel()
+    lengths = (extent(F), extent(R))
+    work = max(abs(float(np.einsum("i,i->", force, x))) for force in (F, R))
+    return Balance(R - F, (max(lengths),), work)
+
+
+def _teller(watch: Watch) -> Callable[[Iteration], None]:
+    def tell(iteration: Iteration) -> None:
+        note = (
+            f"step {iteration.step}, {100 * iteration.fraction:.3g} % of the load, residual "
+            f"{iteration.residual:.1e}"
+        )
+        watch.tell("solving", None, note)
+
+    return tell
+
+
+def _solution(
+    equations: NonlinearEquations,
+    form: _Form,
+    reached: Reached,
+    how: str,
+    timings: dict[str, float],
+) -> Solution:
+    x, net = reached.x, equations.net
+    displacement = Field(net, frozen(x[: 3 * net.count].reshape(-1, 3).copy()))
+    u = displacement.controls
+    pull = form.pull(x) - equations.applied(u, reached.fraction)
+    in_balance = [each for each in reached.path if each.fraction <= reached.fraction]
+    history = tuple(iteration.residual for iteration in reached.path)
+    return Solution(
+        body_at(equations.body, reached.fraction),
+        displacement,
+        resultants(net, equations.of_support, pull),
+        form.energy(x),
+        swelling(equations.body, displacement),
+        how,
+        history,
+        len(history),
+        in_balance[-1].residual if in_balance else 0.0,
+        int(len(form.system.held) - form.system.held.sum()),
+        timings,
+        form.pressure(x),
+        path=reached.path,
+    )
+
+
+def _unreached(reached: Reached, last: Solution) -> NotConverged:
+    history = [iteration.residual for iteration in reached.path]
+    return NotConverged(
+        f"at {100 * reached.tried:.4g} % of the load no equilibrium was found, the last is at "
+        f"{100 * reached.fraction:.4g} %: {reached.why}. What helps: a smaller load or motion, "
+        "smaller steps (steps='auto' halves them as far as 1/1024), a finer mesh where it is "
+        "strained most, a softer law; the last state in balance is `last` of this error",
+        history,
+        last=last,
+        fraction=reached.fraction,
+        path=reached.path,
+    )

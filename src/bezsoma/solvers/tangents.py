@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Linear solves with the tangent of a displacement form: factored, or applied without a matrix."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array, diags_array
+from scipy.sparse.linalg import splu
+
+from bezsoma.arrays import Bools, Floats, Ints
+from bezsoma.equations.nonlinear import NonlinearEquations
+from bezsoma.equations.pointwise import Pointwise, Tangent
+from bezsoma.equations.tangent_matrix import tangent_matrix
+from bezsoma.errors import NotConverged
+from bezsoma.solvers.bicgstab import stabilised
+from bezsoma.solvers.krylov import conjugate_gradients
+from bezsoma.solvers.newton import Breakdown, Linearised
+
+MOST_ITERATIONS = 800
+
+Precondition = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class Factored:
+    """A tangent matrix (n, n), factored by SuperLU when it is first solved with."""
+
+    matrix: csr_array[Any]
+    free: Ints
+    scale: Floats | None = None
+    """What takes the units off unknowns of different kinds (n,), so that pivots compare."""
+
+    def product(self, dx: Floats) -> Floats:
+        """K dx (n,)."""
+        return np.asarray(self.matrix @ dx)
+
+    def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
+        """The free dx (n,) with K dx = b, refined once; `rtol` is met whatever it is."""
+        scale = np.ones(len(b)) if self.scale is None else self.scale
+        S = diags_array(scale[self.free])
+        part = csc_array(S @ self.matrix[self.free][:, self.free] @ S)
+        try:
+            factors = splu(part)
+        except RuntimeError as singular:
+            raise Breakdown(
+                "the tangent is singular: the body has a motion that nothing resists, as where it "
+                "buckles or its law loses ellipticity"
+            ) from singular
+        dx = np.zeros_like(b)
+        right = (scale * b)[self.free]
+        dx[self.free] = factors.solve(right)
+        dx[self.free] += factors.solve(right - part @ dx[self.free])
+        if not np.isfinite(dx).all():
+            raise Breakdown("the tangent is singular to rounding")
+        return scale * dx, 1
+
+
+@dataclass(frozen=True, eq=False)
+class Applied:
+    """A tangent that is only applied, and the preconditioner of the linear law at rest."""
+
+    tangent: Tangent
+    follow: csr_array[Any] | None
+    held: Bools
+    precondition: Precondition
+    symmetric: bool
+
+    def product(self, dx: Floats) -> Floats:
+        """K dx (n,)."""
+        out = self.tangent.apply(dx.reshape(-1, 3)).ravel()
+        if self.follow is not None:
+            out -= self.follow @ dx
+        return out
+
+    def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
+        """The free dx (n,), by conjugate gradients where that can be, else by BiCGStab."""
+        size = float(np.abs(b).max())
+        if size == 0:
+            return np.zeros_like(b), 0
+        scaled = (b / size).reshape(-1, 3)
+        try:
+            x, count = self._solved(scaled, rtol)
+        except NotConverged as failure:
+            raise Breakdown(str(failure)) from failure
+        return x.ravel() * size, count
+
+    def _solved(self, b: Floats, rtol: float) -> tuple[Floats, int]:
+        if self.symmetric:
+            try:
+                x, history = conjugate_gradients(
+                    self._free_product, self.precondition, b, rtol, MOST_ITERATIONS
+                )
+                return x, len(history) - 1
+            except NotConverged:
+                pass  # not positive here: what follows needs no positive tangent
+        return stabilised(self._free_product, self.precondition, b, rtol, MOST_ITERATIONS)
+
+    def _free_product(self, x: Floats) -> Floats:
+        out = self.product(x.ravel()).reshape(-1, 3)
+        out[self.held] = 0.0
+        return out
+
+
+def factored_tangents(
+    equations: NonlinearEquations, pointwise: Pointwise
+) -> Callable[[Floats, float], Linearised]:
+    """What gives the tangent at x (n,) and a fraction of the load, as a matrix."""
+    free = np.flatnonzero(~equations.held.ravel())
+
+    def at(x: Floats, fraction: float) -> Factored:
+        u = x.reshape(-1, 3)
+        matrix, follow = tangent_matrix(pointwise, u), equations.follow(u, fraction)
+        return Factored(matrix if follow is None else csr_array(matrix - follow), free)
+
+    return at
+
+
+def applied_tangents(
+    equations: NonlinearEquations,
+    tangent: Callable[[Floats], Tangent],
+    precondition: Precondition,
+    symmetric: bool,
+) -> Callable[[Floats, float], Linearised]:
+    """What gives the tangent at x (n,) and a fraction of the load, without a matrix."""
+
+    def at(x: Floats, fraction: float) -> Applied:
+        u = x.reshape(-1, 3)
+        follow = equations.follow(u, fraction)
+        return Applied(tangent(u), follow, equations.held, precondition, symmetric)
+
+    return at

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What laws and load steps refuse, and what is said where no equilibrium is found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import bezsoma as bz
+
+REFUSED: list[tuple[Callable[[], Any], str]] = [
+    (lambda: bz.Stiffening(0, 0.3, 5), "E of Stiffening = 0 MPa: it must be positive"),
+    (lambda: bz.Stiffening(1, 0.51, 5), "Poisson's ratio lies above -1"),
+    (lambda: bz.Stiffening(1, -1, 5), "Poisson's ratio lies above -1"),
+    (lambda: bz.Stiffening(1, 0.3, -1), "A of Stiffening = -1"),
+    (lambda: bz.Stiffening(1, 0.3, np.nan), "finite"),
+    (lambda: bz.Stiffening(1, 0.3, 5, measure="frobenious"), "did you mean 'frobenius'"),
+    (lambda: bz.Stiffening(1, 0.3, 5, shears="voigt"), "no shears 'voigt'"),
+    (lambda: bz.Stiffening(1, 0.3, 5, "energy", "engineering"), "go with 'frobenius'"),
+    (lambda: bz.StVenantKirchhoff(-1, 0.3), "E of StVenantKirchhoff"),
+    (lambda: bz.StVenantKirchhoff(1, 0.5), "has no incompressible form"),
+    (lambda: bz.NeoHooke("soft", 0.3), "which is text"),  # type: ignore[arg-type]
+    (lambda: bz.NeoHooke(1, 0.7), "Poisson's ratio lies above -1"),
+    (lambda: bz.MooneyRivlin(-1, 2, 5), "c1 of MooneyRivlin"),
+    (lambda: bz.MooneyRivlin(0, 0, 5), "no shear modulus"),
+    (lambda: bz.MooneyRivlin(1, 1, 0), "kappa of MooneyRivlin"),
+    (lambda: bz.Ogden([1.0, 2.0], [2.0], 5), "as many of the one as of the other"),
+    (lambda: bz.Ogden([1.0], [-2.0], 5), "mu * alpha must be positive"),
+    (lambda: bz.Ogden("1", [2.0], 5), "must be a list"),
+    (lambda: bz.VerondaWestmann(1, 0, 5), "c2 of VerondaWestmann"),
+    (lambda: bz.Guccione(1, 8, 2, -4, 5, (1, 0, 0)), "bfs of Guccione"),
+    (lambda: bz.Guccione(1, 8, 2, 4, 5, (0, 0, 0)), "must point somewhere"),
+    (lambda: bz.FunctionLaw(3), "takes functions"),  # type: ignore[arg-type]
+    (lambda: bz.FunctionLaw(lambda H: H[..., 0]), "one 3 x 3 stress for each H"),
+    (lambda: bz.FunctionLaw(lambda H: H, derivative="exact"), "is not known"),
+    (lambda: bz.FunctionLaw(lambda H: 0 * H), "zero or not finite"),
+    (lambda: bz.Pressure("top", value=1.0, following="yes"), "must be True or False"),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize(("made", "said"), REFUSED, ids=[said for _, said in REFUSED])
+def test_parameters_out_of_range_are_refused(made: Callable[[], Any], said: str) -> None:
+    with pytest.raises(bz.InputError) as refusal:
+        made()
+    assert said in str(refusal.value)
+
+
+def body(law: Any = None, shift: Any = (0, 0, 0.1), **more: Any) -> bz.Body:
+    """A block whose top is moved."""
+    law = law or bz.NeoHooke(1.0, 0.3)
+    supports = [bz.Fixed("bottom"), bz.Moved("top", translation=shift)]
+    return bz.Body(bz.block(), 2, law, supports, **more)
+
+
+@pytest.mark.parametrize(
+    ("how", "said"),
+    [
+        ({"steps": 0}, "in one step or more"),
+        ({"steps": -3}, "in one step or more"),
+        ({"steps": [0.5, 0.9]}, "ending with 1"),
+        ({"steps": [0.5, 0.2, 1]}, "ascending"),
+        ({"steps": "many"}, "give how many"),
+        ({"steps": True}, "give how many"),
+        ({"method": "picard"}, "no method 'picard'"),
+        ({"exactness": 99}, "whole number from 0 to 40"),
+        ({"solver": "cg"}, "serves linear bodies only"),
+        ({"method": "secant"}, "has no secant"),
+    ],
+)
+def test_ways_to_solve_that_are_none(how: Any, said: str) -> None:
+    with pytest.raises(bz.InputError) as refusal:
+        bz.solve(body(), **how)
+    assert said in str(refusal.value)
+
+
+def test_incompressible_law_needs_a_pressure() -> None:
+    for law in (bz.NeoHooke(1.0, 0.5), bz.MooneyRivlin(1.0, 0.0, np.inf)):
+        with pytest.raises(bz.InputError, match="pressure"):
+            body(law)
+
+
+@pytest.mark.parametrize(
+    "law", [bz.StVenantKirchhoff(1.0, 0.3), bz.Stiffening(1.0, 0.3, 5.0, "energy")]
+)
+def test_law_that_does_not_split_cannot_stand_beside_a_pressure(law: Any) -> None:
+    with pytest.raises(bz.InputError, match="does not split"):
+        body(law, incompressible=True)
+
+
+def test_motion_that_turns_tets_inside_out() -> None:
+    """The top is pushed through the bottom: told where, at which fraction, what was reached."""
+    with pytest.raises(bz.NotConverged) as failure:
+        bz.solve(body(shift=(0, 0, -1.2)))
+    error = failure.value
+    assert "% of the load no equilibrium was found" in str(error)
+    assert "region 'tissue'" in str(error) and "J = " in str(error)
+    assert 0.3 < error.fraction < 1
+    reached = error.last.displacement.at(np.array([[0.5, 0.5, 1.0]]))[0, 2]
+    assert abs(reached + 1.2 * error.fraction) < 1e-12
+    assert error.last.residual <= 1e-10
+    assert error.path and error.history
+
+
+def test_given_steps_are_not_cut() -> None:
+    with pytest.raises(bz.NotConverged) as failure:
+        bz.solve(body(shift=(0, 0, -1.2)), steps=2)
+    assert failure.value.fraction in (0.0, 0.5)
+
+
+def test_exponent_that_overflows() -> None:
+    """Strained by 500 %: exp(A s^2) with A s^2 of some thousand has no number."""
+    with pytest.raises(bz.NotConverged) as failure:
+        bz.solve(body(bz.Stiffening(1.0, 0.3, 50.0), (0, 0, 5.0)))
+    assert failure.value.fraction < 1
+    assert "exponent = " in str(failure.value) and "region 'tissue'" in str(failure.value)
+
+
+def test_overflow_on_the_first_try_is_met_by_a_smaller_step() -> None:
+    """Whole, the linear law's first guess overflows; the load is borne all the same."""
+    load = bz.Traction("top", value=(0, 0, 30.0))
+    law = bz.Stiffening(1.0, 0.3, 5.0)
+    found = bz.solve(bz.Body(bz.block(), 1, law, [bz.Fixed("bottom")], [load]))
+    assert found.residual <= 1e-10
+    assert min(each.factor for each in found.path) < 1
+    assert abs(found.reactions["bottom"].force[2] + 30.0) < 1e-7
+
+
+def test_user_law_that_gives_no_numbers_is_told_where() -> None:
+    law = bz.FunctionLaw(lambda H: H + np.where(abs(H.real) > 0.05, np.nan, 0.0))
+    with pytest.raises(bz.NotConverged, match="no finite number in tet"):
+        bz.solve(body(law, (0, 0, 0.4)))
