@@ -96,7 +96,7 @@ def _grid(spacing: Floats, angle: float) -> Grid:
 def _levels(grid: Grid, mouth: float, joint: float, bite: float) -> dict[str, Singles]:
     """Levels (z, y, x) of every part, hollows already cut out of bones."""
     cast, without = grid.cast, _without
-    angle = -mouth  # the chin goes down
+    angle = mouth  # y towards z: what lies in front goes down
     half = bite / 2 if bite > 0 else -0.15
     skull = np.minimum(without(cast(bodies.CRANIUM), cast(bodies.BRAIN)), cast(bodies.FACE, 3))
     for hollow in (bodies.BRAIN, bodies.ORBITS, bodies.fossae(joint if joint > 0 else -0.2)):
@@ -149,9 +149,9 @@ def _cast(parts: dict[str, Singles], grid: Grid, things: bool) -> Singles:
 
 
 def _paint(values: Singles, levels: Singles, tissue: str) -> None:
-    part = coverage(levels)
-    values *= 1 - part
-    values += np.float32(HU[tissue]) * part
+    reached, part = coverage(levels)
+    flat = values.reshape(-1)
+    flat[reached] += part * (np.float32(HU[tissue]) - flat[reached])
 
 
 def _rest(grid: Grid) -> Singles:

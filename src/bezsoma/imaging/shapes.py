@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Floats, Ints
 from bezsoma.imaging.volume import Frame
 
 Singles = npt.NDArray[np.float32]
@@ -152,30 +152,43 @@ class Grid:
             self.points(first, last),
         )
 
-    def points(self, first: object = (0, 0, 0), last: object = None) -> Floats:
+    def points(self, first: npt.ArrayLike = (0, 0, 0), last: npt.ArrayLike | None = None) -> Floats:
         """Centres (z, y, x, 3) in mm of the voxels from one index up to, without, another."""
         low, high = np.asarray(first), np.asarray(self.shape if last is None else last)
-        ranges = [np.arange(a, b) for a, b in zip(low, high, strict=True)]
-        z, y, x = np.meshgrid(*ranges[::-1], indexing="ij")
-        return self.frame.points(np.stack([x, y, z], axis=-1)).astype(np.float32)
+        steps = self.frame.axes * self.frame.spacing
+        x, y, z = (
+            (np.arange(a, b)[:, None] * step).astype(np.float32)
+            for a, b, step in zip(low, high, steps.T, strict=True)
+        )
+        return z[:, None, None] + (y[:, None] + (x + self.frame.origin.astype(np.float32)))
 
 
-def coverage(levels: Singles) -> Singles:
-    """What part (z, y, x) of every voxel lies inside, from levels (z, y, x).
+def coverage(levels: Singles) -> tuple[Ints, Singles]:
+    """Which voxels a body reaches, as flat numbers (m,), and what part (m,) of each is inside.
 
     A plane cuts a voxel into parts that depend on its offset and direction; to first order the
     part is 1/2 - f / (|f_x| + |f_y| + |f_z|), f_i the change of the level over a voxel, whatever
     the levels' scale. A plane half a voxel away along an axis leaves the voxel untouched:
 
     >>> levels = np.broadcast_to(3 * (np.arange(5.0) - 1.75), (5, 5, 5)).astype(np.float32)
-    >>> coverage(levels)[2, 2].tolist()
-    [1.0, 1.0, 0.25, 0.0, 0.0]
+    >>> reached, part = coverage(levels)
+    >>> part[reached // 5 == 12].tolist()
+    [1.0, 1.0, 0.25]
     """
-    inside: Singles = (levels < 0).astype(np.float32)
-    near = np.clip(levels, -NEAR, NEAR)
-    width = np.zeros_like(near)
+    flat = levels.ravel()
+    reached = np.flatnonzero(flat < NEAR)
+    part = np.ones(len(reached), np.float32)
+    mixed = np.flatnonzero(flat[reached] > -NEAR)
+    place = np.stack(np.unravel_index(reached[mixed], levels.shape))
+    width = np.zeros(len(mixed), np.float32)
     for axis in range(3):
-        width += np.abs(np.gradient(near, axis=axis))
-    mixed = np.abs(near) < np.minimum(width, NEAR)
-    inside[mixed] = np.clip(0.5 - near[mixed] / np.maximum(width[mixed], 1e-6), 0, 1)
-    return inside
+        ends = []
+        for step in (-1, 1):
+            beside = place.copy()
+            beside[axis] = np.clip(beside[axis] + step, 0, levels.shape[axis] - 1)
+            ends.append(np.clip(levels[tuple(beside)], -NEAR, NEAR))
+        width += np.abs(ends[1] - ends[0]) / 2
+    level = flat[reached[mixed]]
+    part[mixed] = np.clip(0.5 - level / np.maximum(width, 1e-6), 0, 1)
+    some = part > 0
+    return reached[some], part[some]

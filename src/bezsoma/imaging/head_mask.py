@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the head is: air outside, head rest, wires and table taken away, hollows inside found."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+
+from bezsoma.arrays import Bools, Floats, Ints
+from bezsoma.errors import InputError
+from bezsoma.imaging.settings import LabelSettings
+from bezsoma.imaging.volume import Volume
+
+COARSE = 2.5
+"""mm: the grid on which the head is first looked for."""
+MARGIN = 12.0
+"""mm of air kept around the head."""
+SMALLEST, LARGEST = 300e3, 40e6
+"""mm3 of what can be a head (a child's with little neck) or one with shoulders."""
+
+
+def around_head(volume: Volume, settings: LabelSettings) -> tuple[Ints, Ints]:
+    """Indices (3,), (3,) along x, y, z between which the largest body in the picture lies."""
+    step = np.maximum(1, np.rint(COARSE / volume.frame.spacing)).astype(int)
+    solid = volume.values[:: step[2], :: step[1], :: step[0]] > settings.skin
+    largest = _largest(ndimage.binary_opening(solid))
+    found = ndimage.find_objects(largest.astype(np.int8))
+    size = float(largest.sum() * np.prod(step * volume.frame.spacing))
+    if not found or not SMALLEST <= size <= LARGEST:
+        raise InputError(
+            f"the largest body in the picture has {size / 1e3:.4g} cm3; a head has "
+            f"{SMALLEST / 1e3:g} to {LARGEST / 1e3:g} (is the picture in mm and HU, and is the "
+            "whole head in view?)"
+        )
+    margin = np.ceil(MARGIN / volume.frame.spacing).astype(int) + step
+    low = np.array([s.start for s in found[0]])[::-1] * step - margin
+    high = np.array([s.stop for s in found[0]])[::-1] * step + margin
+    return np.maximum(low, 0), np.minimum(high, volume.shape)
+
+
+def _largest(mask: Bools, structure: Any = None) -> Bools:
+    """The largest connected part of a mask."""
+    parts, count = ndimage.label(mask, structure)
+    if count == 0:
+        return np.zeros_like(mask)
+    return np.asarray(parts == np.bincount(parts.ravel())[1:].argmax() + 1)
+
+
+def distance(mask: Bools, spacing: Floats) -> Any:
+    """Distances (z, y, x), mm, float32, from the voxels of a mask to the nearest outside it."""
+    return ndimage.distance_transform_edt(mask, sampling=spacing[::-1]).astype(np.float32)
+
+
+def body(volume: Volume, settings: LabelSettings) -> Bools:
+    """The head without air, and without what fits in no ball of radius `thin`: an opening."""
+    solid = volume.values > settings.skin
+    if settings.thin == 0:
+        return _largest(solid)
+    spacing = volume.frame.spacing
+    core = _largest(distance(solid, spacing) > settings.thin)
+    if not core.any():
+        raise InputError(f"nothing in the picture is thicker than {2 * settings.thin:g} mm")
+    opened = distance(~core, spacing) <= settings.thin
+    del core
+    return np.asarray(opened & solid)
+
+
+def hollows(solid: Bools, settings: LabelSettings, spacing: Floats) -> Bools:
+    """Air inside the head (z, y, x): what is left behind when openings are sealed, and the plugs.
+
+    A closing by a ball of radius `sealed` shuts nostrils and lips; air that then has no way to the
+    sides or the top of the picture is inside. The lowest slice is no way out: there the windpipe
+    is cut, not open.
+    """
+    closed = solid
+    if settings.sealed > 0:
+        near = distance(~solid, spacing) <= settings.sealed
+        near[0] = near[1] if len(near) > 1 else near[0]
+        closed = distance(near, spacing) > settings.sealed
+        closed |= solid
+        del near
+    inside = _enclosed(closed)
+    if settings.sealed > 0 and inside.any():
+        plug = closed & ~solid
+        plug &= distance(~inside, spacing) <= settings.sealed
+        inside |= plug
+    return inside | _enclosed(solid | inside)
+
+
+def _enclosed(solid: Bools) -> Bools:
+    """What of the rest has no way to the sides or the top."""
+    parts, count = ndimage.label(~solid)
+    outside = np.zeros(count + 1, np.bool_)
+    outside[0] = True
+    for face in (parts[-1], parts[:, 0], parts[:, -1], parts[:, :, 0], parts[:, :, -1]):
+        outside[np.unique(face)] = True
+    return np.asarray(~outside[parts])
