@@ -60,19 +60,32 @@ def bone(values: Any, inside: Bools, spacing: Floats, settings: LabelSettings) -
     """
     found = (values > settings.bone) & inside
     if settings.halfway:
-        reach = np.clip(np.rint(settings.reach / spacing[::-1]), 1, 4).astype(int)
-        densest = ndimage.maximum_filter(values, size=2 * reach + 1)
-        too_thin = values < (settings.soft + densest.astype(np.float32)) / 2
-        del densest
+        too_thin = values < level_between(values, 0.5, spacing, settings)
         for _ in range(PEELS):
             found &= ~(too_thin & ~ndimage.binary_erosion(found, border_value=1))
     found |= marrow(found, values, spacing, settings)
     return without_specks(found, settings.speck / float(np.prod(spacing)))
 
 
+def level_between(values: Any, part: float, spacing: Floats, settings: LabelSettings) -> Any:
+    """HU (z, y, x) that lie `part` of the way from `soft` to the densest within `reach`.
+
+    At least two voxels far, since beside an edge no voxel need be full of bone.
+    """
+    reach = np.clip(np.rint(settings.reach / spacing[::-1]), 2, 4).astype(int)
+    densest = ndimage.maximum_filter(values, size=2 * reach + 1).astype(np.float32)
+    densest -= np.float32(settings.soft)
+    densest *= np.float32(part)
+    densest += np.float32(settings.soft)
+    return densest
+
+
 def marrow(found: Bools, values: Any, spacing: Floats, settings: LabelSettings) -> Bools:
-    """Holes of bone, in slices along each axis, that are smaller than `marrow` and hold no air."""
-    filled = np.zeros_like(found)
+    """Holes of bone that are smaller than `marrow` in slices along two axes, and hold no air.
+
+    One axis would not do: two rows of teeth that touch enclose holes as well.
+    """
+    filled = np.zeros(found.shape, np.uint8)
     for axis in range(3):
         area = float(np.prod(np.delete(spacing[::-1], axis)))
         for k in range(found.shape[axis]):
@@ -80,8 +93,8 @@ def marrow(found: Bools, values: Any, spacing: Floats, settings: LabelSettings) 
             part[axis] = k
             plane = found[tuple(part)]
             if plane.any():
-                filled[tuple(part)] |= _small_holes(plane, settings.marrow / area)
-    return np.asarray(filled & (values > MARROW_HU))
+                filled[tuple(part)] += _small_holes(plane, settings.marrow / area)
+    return np.asarray((filled > 1) & (values > MARROW_HU))
 
 
 def _small_holes(plane: Bools, most: float) -> Bools:

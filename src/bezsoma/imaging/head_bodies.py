@@ -101,7 +101,7 @@ MOUTH: list[Body] = [Ellipsoid((0, -78, -7), (20, 34, 6)), Rod((0, -60, -8), (0,
 def fossae(gap: float) -> list[Body]:
     """The hollows over the condyles, `gap` mm above them, wider than they are."""
     x, y, z = CONDYLE
-    return both(Ellipsoid((x, y, z + 6 + gap - 9), (14, 9, 9)))
+    return both(Ellipsoid((x, y, z + 6 + gap - 9), (18, 14, 9)))
 
 
 def teeth(tip: float, root: float) -> list[Body]:

@@ -59,10 +59,11 @@ def body(volume: Volume, settings: LabelSettings) -> Bools:
     if settings.thin == 0:
         return _largest(solid)
     spacing = volume.frame.spacing
-    core = _largest(distance(solid, spacing) > settings.thin)
+    radius = settings.thin + spacing.max() / 2  # distances run to the middle of the next voxel
+    core = _largest(distance(solid, spacing) > radius)
     if not core.any():
         raise InputError(f"nothing in the picture is thicker than {2 * settings.thin:g} mm")
-    opened = distance(~core, spacing) <= settings.thin
+    opened = distance(~core, spacing) <= radius
     del core
     return np.asarray(opened & solid)
 
@@ -70,22 +71,20 @@ def body(volume: Volume, settings: LabelSettings) -> Bools:
 def hollows(solid: Bools, settings: LabelSettings, spacing: Floats) -> Bools:
     """Air inside the head (z, y, x): what is left behind when openings are sealed, and the plugs.
 
-    A closing by a ball of radius `sealed` shuts nostrils and lips; air that then has no way to the
-    sides or the top of the picture is inside. The lowest slice is no way out: there the windpipe
-    is cut, not open.
+    A closing by a ball of radius `sealed` shuts nostrils, lips and ear canals. Inside is then air
+    that has no way to the sides or the top of the picture, and what the closing filled deeper than
+    `sealed` under the surface; folds of the skin that it filled are shallower and stay outside. The
+    lowest slice is no way out: there the windpipe is cut, not open.
     """
-    closed = solid
-    if settings.sealed > 0:
-        near = distance(~solid, spacing) <= settings.sealed
-        near[0] = near[1] if len(near) > 1 else near[0]
-        closed = distance(near, spacing) > settings.sealed
-        closed |= solid
-        del near
+    if settings.sealed == 0:
+        return _enclosed(solid)
+    closed = distance(distance(~solid, spacing) <= settings.sealed, spacing) > settings.sealed
+    closed |= solid
     inside = _enclosed(closed)
-    if settings.sealed > 0 and inside.any():
-        plug = closed & ~solid
-        plug &= distance(~inside, spacing) <= settings.sealed
-        inside |= plug
+    closed |= inside
+    inside |= (distance(closed, spacing) > settings.sealed) & ~solid
+    if inside.any():
+        inside |= closed & (distance(~inside, spacing) <= settings.sealed) & ~solid
     return inside | _enclosed(solid | inside)
 
 

@@ -15,14 +15,10 @@ from scipy import ndimage
 
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.errors import InputError
-from bezsoma.imaging.bone import marrow
 from bezsoma.imaging.head_mask import distance
 from bezsoma.imaging.settings import LabelSettings
 from bezsoma.imaging.volume import Frame
 
-LEVELS = (1.0, 1.6, 2.4)
-"""Widths are averaged over bone denser than so many times the threshold: at a joint the dense
-parts lie further apart than the fuzzy ones."""
 STEP = 0.2
 """mm: widths closer than this count as equal, and distance decides."""
 CROWN = 80.0
@@ -33,6 +29,8 @@ BAND = 15.0
 """mm to either side of the median plane where the chin is looked for."""
 BEHIND = 30.0
 """mm: a chin lies no further behind the front of the face."""
+DEPTH = 50.0
+"""mm: in the median plane, what lies so far behind the chin is no mandible."""
 HEIGHT = 14.0
 """mm: so much of the chin's height is taken as its seed."""
 LEAST, MOST = 8e3, 250e3
@@ -60,8 +58,12 @@ def seeds(found: Bools, frame: Frame, settings: LabelSettings) -> Seeds:
     else:
         skull = index[points[:, 2] > points[:, 2].max() - CROWN]
     if settings.chin is not None:
-        return Seeds(skull, _seed(settings.chin, "chin", index, points))
-    return Seeds(skull, index[_chin(points, frame)])
+        chin = _seed(settings.chin, "chin", index, points)
+    else:
+        chin = index[_chin(points, frame)]
+    if settings.skull is None:
+        skull = np.concatenate([skull, index[_behind(points, frame.points(chin))]])
+    return Seeds(skull, chin)
 
 
 def _seed(point: tuple[float, float, float], name: str, index: Ints, points: Floats) -> Ints:
@@ -103,26 +105,20 @@ def _chin(points: Floats, frame: Frame) -> Bools:
     return np.asarray(chin)
 
 
-def widths(values: Any, found: Bools, spacing: Floats, settings: LabelSettings) -> Any:
-    """Half widths (z, y, x) in mm of bone, averaged over levels of density."""
-    total = distance(found, spacing)
-    for level in LEVELS[1:]:
-        dense = found & (values > level * settings.bone)
-        dense |= marrow(dense, values, spacing, settings) & found
-        total += distance(dense, spacing)
-    return np.asarray(total / np.float32(len(LEVELS)))
+def _behind(points: Floats, chin: Floats) -> Bools:
+    """Which of the bone's points (b, 3) lie in the median plane so far behind the chin (c, 3) that
+    they are skull base or spine."""
+    x, y, _ = chin.mean(axis=0)
+    return np.asarray((np.abs(points[:, 0] - x) < BAND) & (points[:, 1] > y + DEPTH))
 
 
-def mandible(
-    values: Any, found: Bools, frame: Frame, settings: LabelSettings
-) -> tuple[Bools, float]:
+def mandible(found: Bools, frame: Frame, settings: LabelSettings) -> tuple[Bools, float]:
     """The mandible among the bone (z, y, x), and the half width in mm of the widest bridge cut.
 
     0 means that it hung together with the skull nowhere.
     """
     start = seeds(found, frame, settings)
-    width = widths(values, found, frame.spacing, settings)
-    side, bridge = flooded(np.where(found, width, 0), start)
+    side, bridge = flooded(distance(found, frame.spacing), start)
     jaw = side == 2
     jaw |= _loose(found & (side == 0), jaw, side == 1, frame.spacing)
     volume = float(jaw.sum() * np.prod(frame.spacing))

@@ -79,14 +79,13 @@ def labels(
     notes += _metal(part, solid, settings)
     values[found] = BONE
     if settings.mandible:
-        values[_jaw(quiet, found, part.frame, settings, masks, notes)] = MANDIBLE
+        values[_jaw(found, part.frame, settings, masks, notes)] = MANDIBLE
     if settings.tissues:
         _tissues(values, quiet, settings)
     return Labels(values, part.frame, settings, low, tuple(notes))
 
 
 def _jaw(
-    quiet: Grid,
     found: Bools,
     frame: Frame,
     settings: LabelSettings,
@@ -95,7 +94,7 @@ def _jaw(
 ) -> Bools:
     if "mandible" in masks:
         return masks["mandible"]
-    jaw, bridge = mandible(quiet, found, frame, settings)
+    jaw, bridge = mandible(found, frame, settings)
     if bridge == 0:
         notes.append("mandible and skull touch nowhere")
     else:

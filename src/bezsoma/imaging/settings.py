@@ -19,7 +19,7 @@ class LabelSettings:
 
     skin: float = -500.0
     """HU: half-way between air (-1000) and skin (about 0)."""
-    thin: float = 2.5
+    thin: float = 3.0
     """mm: what fits into no ball of this radius is no part of a head (head rest, wires, sheets)."""
     sealed: float = 5.0
     """mm: openings that a ball of this radius closes do not lead outside (nostrils, lips); 0: all
@@ -39,7 +39,7 @@ class LabelSettings:
     """mm2: smaller holes of bone in a slice are marrow or nerve canals, and count as bone."""
     speck: float = 30.0
     """mm3: smaller pieces of bone are noise."""
-    quiet: float = 20.0
+    quiet: float = 30.0
     """HU: noise is smoothed until about this is left, where bone is looked for."""
     tissues: bool = False
     """Whether soft tissue is told apart into muscle, fat and the rest by their windows."""
