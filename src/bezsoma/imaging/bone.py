@@ -73,7 +73,9 @@ def level_between(values: Any, part: float, spacing: Floats, settings: LabelSett
     At least two voxels far, since beside an edge no voxel need be full of bone.
     """
     reach = np.clip(np.rint(settings.reach / spacing[::-1]), 2, 4).astype(int)
-    densest = ndimage.maximum_filter(values, size=2 * reach + 1).astype(np.float32)
+    densest = ndimage.maximum_filter(values, size=tuple((2 * reach + 1).tolist())).astype(
+        np.float32
+    )
     densest -= np.float32(settings.soft)
     densest *= np.float32(part)
     densest += np.float32(settings.soft)

@@ -82,9 +82,7 @@ def read_series(folder: Path, child: Child, series: str | None, interpolate: boo
     try:
         headers, notes = _ordered(_images_of(chosen))
         _check_ct(chosen.modality, headers)
-        answer, values = child.answer(
-            where, what="slices", paths=[header["path"] for header in headers]
-        )
+        _, values = child.answer(where, what="slices", paths=[header["path"] for header in headers])
         assert values is not None
         return _volume(values, headers, notes, interpolate)
     except InputError as error:

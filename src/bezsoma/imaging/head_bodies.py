@@ -89,12 +89,16 @@ JAW: list[Body] = [
         Ellipsoid(CONDYLE, (9, 5, 6)),
     ),
 ]
-SINUSES: list[Body] = both(Ellipsoid((21, -46, 36), (10, 15, 13)), Ellipsoid((9, -77, 84), (8, 3.5, 6)))
+SINUSES: list[Body] = both(
+    Ellipsoid((21, -46, 36), (10, 15, 13)), Ellipsoid((9, -77, 84), (8, 3.5, 6))
+)
 NOSE: list[Body] = [
     Ellipsoid((0, -58, 32), (8, 30, 15)),
     *both(Rod((6.5, -103, 21), (6, -82, 27), 3.5, 4)),
 ]
-THROAT: list[Body] = chained([(0, -40, 30), (0, -12, 22), (0, -10, -90), (0, -10, -140)], [7, 7, 7, 7])
+THROAT: list[Body] = chained(
+    [(0, -40, 30), (0, -12, 22), (0, -10, -90), (0, -10, -140)], [7, 7, 7, 7]
+)
 MOUTH: list[Body] = [Ellipsoid((0, -78, -7), (20, 34, 6)), Rod((0, -60, -8), (0, -12, -12), 5, 6)]
 
 

@@ -160,7 +160,7 @@ def _rest(grid: Grid) -> Singles:
     across = np.hypot(p[..., 0], p[..., 1] - 8)
     shell = np.maximum(np.abs(across - 98.5) - 2, 60 - p[..., 1])
     table = np.abs(p[..., 1] - 124) - 3
-    return np.minimum(shell, table).astype(np.float32)
+    return np.asarray(np.minimum(shell, table), np.float32)
 
 
 def _wires(grid: Grid, skin: Singles) -> Singles:
@@ -168,7 +168,7 @@ def _wires(grid: Grid, skin: Singles) -> Singles:
     p = grid.points()
     beside = np.abs(np.abs(p[..., 0]) - 45) - 0.6
     along = np.maximum(np.abs(p[..., 2] - 12) - 28, p[..., 1])
-    return np.maximum(np.maximum(beside, along), np.abs(skin - 0.5) - 0.6).astype(np.float32)
+    return np.asarray(np.maximum(np.maximum(beside, along), np.abs(skin - 0.5) - 0.6), np.float32)
 
 
 def _streak(values: Singles, grid: Grid) -> None:

@@ -17,6 +17,8 @@ COARSE = 2.5
 """mm: the grid on which the head is first looked for."""
 MARGIN = 12.0
 """mm of air kept around the head."""
+SHALLOW = 4.0
+"""mm under the surface: hard things that lie no deeper anywhere are worn, not grown."""
 SMALLEST, LARGEST = 300e3, 40e6
 """mm3 of what can be a head (a child's with little neck) or one with shoulders."""
 
@@ -60,12 +62,27 @@ def body(volume: Volume, settings: LabelSettings) -> Bools:
         return _largest(solid)
     spacing = volume.frame.spacing
     radius = settings.thin + spacing.max() / 2  # distances run to the middle of the next voxel
-    core = _largest(distance(solid, spacing) > radius)
+    deep = distance(solid, spacing)
+    worn = _on_the_skin(volume.values > settings.bone, deep)
+    if worn.any():
+        solid &= ~worn
+        deep = distance(solid, spacing)
+    core = _largest(deep > radius)
+    del deep
     if not core.any():
         raise InputError(f"nothing in the picture is thicker than {2 * settings.thin:g} mm")
     opened = distance(~core, spacing) <= radius
     del core
     return np.asarray(opened & solid)
+
+
+def _on_the_skin(hard: Bools, deep: Any) -> Bools:
+    """Where hard pieces lie that reach nowhere deeper than `SHALLOW` mm: wires, markers, rings."""
+    parts, count = ndimage.label(hard, np.ones((3, 3, 3)))
+    deepest = np.atleast_1d(ndimage.maximum(deep, parts, np.arange(count + 1)))
+    shallow = deepest <= SHALLOW
+    shallow[0] = False
+    return np.asarray(ndimage.binary_dilation(shallow[parts]) & (deep <= SHALLOW))
 
 
 def hollows(solid: Bools, settings: LabelSettings, spacing: Floats) -> Bools:
@@ -78,6 +95,8 @@ def hollows(solid: Bools, settings: LabelSettings, spacing: Floats) -> Bools:
     """
     if settings.sealed == 0:
         return _enclosed(solid)
+    x, y, z = np.ceil(2 * settings.sealed / spacing).astype(int)
+    solid = np.pad(solid, ((0, z), (y, y), (x, x)))
     closed = distance(distance(~solid, spacing) <= settings.sealed, spacing) > settings.sealed
     closed |= solid
     inside = _enclosed(closed)
@@ -85,7 +104,8 @@ def hollows(solid: Bools, settings: LabelSettings, spacing: Floats) -> Bools:
     inside |= (distance(closed, spacing) > settings.sealed) & ~solid
     if inside.any():
         inside |= closed & (distance(~inside, spacing) <= settings.sealed) & ~solid
-    return inside | _enclosed(solid | inside)
+    inside |= _enclosed(solid | inside)
+    return inside[: solid.shape[0] - z, y : solid.shape[1] - y, x : solid.shape[2] - x]
 
 
 def _enclosed(solid: Bools) -> Bools:

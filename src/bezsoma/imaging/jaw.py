@@ -74,7 +74,7 @@ def _seed(point: tuple[float, float, float], name: str, index: Ints, points: Flo
             f"{name}={point} is no point of bone: the nearest bone lies {gap.min():.4g} mm away; "
             "points are mm in LPS (x to the left, y to posterior, z to superior)"
         )
-    return index[gap <= 3]
+    return np.asarray(index[gap <= 3])
 
 
 def _chin(points: Floats, frame: Frame) -> Bools:
@@ -101,13 +101,16 @@ def _chin(points: Floats, frame: Frame) -> Bools:
             "z), a point in the bone of the chin, and skull="
         )
     if lowest - bottom < 2 * frame.spacing[2] and frame.axes[2, 2] > 0.99:
-        raise InputError("the chin is cut by the lowest slice; a picture of the whole jaw is needed")
+        raise InputError(
+            "the chin is cut by the lowest slice; a picture of the whole jaw is needed"
+        )
     return np.asarray(chin)
 
 
 def _behind(points: Floats, chin: Floats) -> Bools:
     """Which of the bone's points (b, 3) lie in the median plane so far behind the chin (c, 3) that
-    they are skull base or spine."""
+    they are skull base or spine.
+    """
     x, y, _ = chin.mean(axis=0)
     return np.asarray((np.abs(points[:, 0] - x) < BAND) & (points[:, 1] > y + DEPTH))
 
@@ -161,9 +164,7 @@ def _offsets(strides: Ints) -> Ints:
     return np.array([s @ strides for s in near])
 
 
-def _level(
-    side: Any, edge: Ints, open_: Bools, flat: Any, offsets: Ints
-) -> tuple[Ints, bool]:
+def _level(side: Any, edge: Ints, open_: Bools, flat: Any, offsets: Ints) -> tuple[Ints, bool]:
     """Take all that can be reached; the voxels that still border on bone, and whether sides met."""
     met = False
     waiting = []

@@ -121,9 +121,7 @@ def _tissues(values: Grid, quiet: Grid, settings: LabelSettings) -> None:
         values[(values == SOFT) & (quiet >= low) & (quiet <= high)] = label
 
 
-def _given(
-    given: Segmentation | None, volume: Volume, low: Ints, high: Ints
-) -> dict[str, Bools]:
+def _given(given: Segmentation | None, volume: Volume, low: Ints, high: Ints) -> dict[str, Bools]:
     """The masks that somebody gave, on the part of the picture."""
     if given is None:
         return {}

@@ -80,9 +80,7 @@ def _packed(values: Grid) -> bytes:
     return pack.compress(little.tobytes()) + pack.flush()
 
 
-def checked_place(
-    path: str | os.PathLike[str], endings: tuple[str, ...], overwrite: bool
-) -> Path:
+def checked_place(path: str | os.PathLike[str], endings: tuple[str, ...], overwrite: bool) -> Path:
     """The path, if a file with one of the endings may be written there."""
     place = Path(path)
     if not place.name.lower().endswith(endings):

@@ -36,7 +36,7 @@ class Ellipsoid:
 
     def box(self) -> Floats:
         """The two corners (2, 3) around it."""
-        return np.array([self.middle] * 2) + np.outer([-1, 1], self.half)
+        return np.asarray(np.array([self.middle] * 2) + np.outer([-1, 1], self.half))
 
     def level(self, points: Floats) -> Floats:
         """Levels (...) at points (..., 3)."""
@@ -160,7 +160,8 @@ class Grid:
             (np.arange(a, b)[:, None] * step).astype(np.float32)
             for a, b, step in zip(low, high, steps.T, strict=True)
         )
-        return z[:, None, None] + (y[:, None] + (x + self.frame.origin.astype(np.float32)))
+        origin = self.frame.origin.astype(np.float32)
+        return np.asarray(z[:, None, None] + (y[:, None] + (x + origin)))
 
 
 def coverage(levels: Singles) -> tuple[Ints, Singles]:

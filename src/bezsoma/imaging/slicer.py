@@ -126,7 +126,9 @@ def write_surface(
         raise InputError(f"triangles of shape {triangles.shape}; (t, 3) is needed")
     if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
         raise InputError("triangles name points that are not there")
-    whole(place, {".stl": _stl, ".ply": _ply, ".obj": _obj}[place.suffix.lower()](points, triangles))
+    whole(
+        place, {".stl": _stl, ".ply": _ply, ".obj": _obj}[place.suffix.lower()](points, triangles)
+    )
 
 
 def _stl(points: Floats, triangles: Ints) -> bytes:
@@ -136,7 +138,7 @@ def _stl(points: Floats, triangles: Ints) -> bytes:
     table = np.zeros(len(triangles), [("xyz", "<f4", (4, 3)), ("attribute", "<u2")])
     table["xyz"][:, 0], table["xyz"][:, 1:] = normal, corners
     head = f"BezSoma, mm. {MARK}".encode().ljust(80)
-    return head + np.uint32(len(triangles)).astype("<u4").tobytes() + table.tobytes()
+    return head + len(triangles).to_bytes(4, "little") + bytes(table.tobytes())
 
 
 def _ply(points: Floats, triangles: Ints) -> bytes:

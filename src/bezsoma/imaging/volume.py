@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -129,7 +129,9 @@ class Volume:
         flips = tuple(slice(None, None, int(s)) for s in signs[::-1])
         return replace(self, values=values[flips], frame=frame)
 
-    def resampled(self, frame: Frame, shape: tuple[int, int, int], order: int = 1) -> Volume:
+    def resampled(
+        self, frame: Frame, shape: tuple[int, int, int], order: Literal[0, 1] = 1
+    ) -> Volume:
         """Values on another grid, linear between voxels (order 0: the nearest); outside: edge.
 
         >>> line = Volume(np.arange(5.0).reshape(1, 1, 5), Frame([2, 1, 1], [0, 0, 0], np.eye(3)))
