@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from bezsoma.imaging.head_ct import HeadCt, head_ct
-from bezsoma.imaging.labels import Labels, labels
+from bezsoma.imaging.labelling import Labels, labels
 from bezsoma.imaging.nrrd import write_segmentation, write_volume
 from bezsoma.imaging.phantom import head_phantom, landmarks
 from bezsoma.imaging.plates import label_plates, legend

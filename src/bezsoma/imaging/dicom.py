@@ -253,7 +253,7 @@ def _sheared_back(
     most = float(np.abs(offset * spacing).max())
     notes.append(f"slices do not stand square on each other: moved back by up to {most:.4g} mm")
     return np.stack([
-        ndimage.shift(s, -o[::-1], order=1, mode="nearest")
+        ndimage.shift(s, o[::-1], order=1, mode="nearest")
         for s, o in zip(values, offset, strict=True)
     ])  # fmt: skip
 

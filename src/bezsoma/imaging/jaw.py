@@ -108,9 +108,7 @@ def _chin(points: Floats, frame: Frame) -> Bools:
 
 
 def _behind(points: Floats, chin: Floats) -> Bools:
-    """Which of the bone's points (b, 3) lie in the median plane so far behind the chin (c, 3) that
-    they are skull base or spine.
-    """
+    """Which points (b, 3) lie in the median plane, far behind the chin (c, 3): the spine."""
     x, y, _ = chin.mean(axis=0)
     return np.asarray((np.abs(points[:, 0] - x) < BAND) & (points[:, 1] > y + DEPTH))
 

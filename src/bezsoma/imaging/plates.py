@@ -9,7 +9,7 @@ import numpy as np
 from scipy import ndimage
 
 from bezsoma.arrays import Bools, Floats, frozen
-from bezsoma.imaging.labels import Labels
+from bezsoma.imaging.labelling import Labels
 from bezsoma.imaging.meaning import AIR, BONE, CAVITY, COLOURS, MANDIBLE, NAMES
 from bezsoma.imaging.volume import Grid, Volume
 
