@@ -77,7 +77,9 @@ class Slice:
             element(2, 0x10, "UI", b"1.2.840.10008.1.2.1"),
             element(2, 0x12, "UI", b"1.2.3.9"),
         ])  # fmt: skip
-        return b"\0" * 128 + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + body
+        return (
+            b"\0" * 128 + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + body
+        )
 
 
 def pattern(count: int = 14, rows: int = 20, columns: int = 30) -> Any:

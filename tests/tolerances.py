@@ -46,3 +46,11 @@ ENERGY_NORM = 1e-7
 HARD = 1e-5
 """Multigrid to 1e-8 against the direct solver in the energy norm, relative, on the hardest bodies:
 contrasts of 1e4 and flat tets stand between a small residual and a small error."""
+
+DICE_TISSUE, DICE_JAW = 0.97, 0.95
+"""Overlap of labels with the truth at voxel centres: soft tissue, and bone thicker than two voxels;
+the mandible, whose cuts from the skull are a matter of a voxel or two."""
+
+SKIN_VOXELS = 0.3
+"""Mean distance of the labelled skin from the true one, in voxels; a perfect rounding to voxels has
+0.2 to 0.25."""

@@ -18,7 +18,9 @@ COARSE = 2.5
 MARGIN = 12.0
 """mm of air kept around the head."""
 SHALLOW = 4.0
-"""mm under the surface: hard things that lie no deeper anywhere are worn, not grown."""
+"""mm under the surface: hard things that lie no deeper are worn, not grown."""
+FOOT = 0.1
+"""What part of such a piece may border on something deeper."""
 SMALLEST, LARGEST = 300e3, 40e6
 """mm3 of what can be a head (a child's with little neck) or one with shoulders."""
 
@@ -77,12 +79,17 @@ def body(volume: Volume, settings: LabelSettings) -> Bools:
 
 
 def _on_the_skin(hard: Bools, deep: Any) -> Bools:
-    """Where hard pieces lie that reach nowhere deeper than `SHALLOW` mm: wires, markers, rings."""
-    parts, count = ndimage.label(hard, np.ones((3, 3, 3)))
-    deepest = np.atleast_1d(ndimage.maximum(deep, parts, np.arange(count + 1)))
-    shallow = deepest <= SHALLOW
-    shallow[0] = False
-    return np.asarray(ndimage.binary_dilation(shallow[parts]) & (deep <= SHALLOW))
+    """Where hard pieces lie just under the surface without a broad foot below: wires, rings.
+
+    Bone that comes near the skin continues below nearly everywhere, a wire at its ends at most.
+    """
+    shallow = hard & (deep <= SHALLOW)
+    parts, count = ndimage.label(shallow, np.ones((3, 3, 3)))
+    foot = ndimage.binary_dilation(hard & (deep > SHALLOW)) & shallow
+    size = np.bincount(parts.ravel(), minlength=count + 1)
+    worn = np.bincount(parts[foot], minlength=count + 1) < FOOT * size
+    worn[0] = False
+    return np.asarray(ndimage.binary_dilation(worn[parts]) & (deep <= SHALLOW))
 
 
 def hollows(solid: Bools, settings: LabelSettings, spacing: Floats) -> Bools:

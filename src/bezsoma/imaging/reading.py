@@ -73,7 +73,8 @@ def read_volume(
                 str(path), what="image", path=str(place), io=_io(place), most=MOST_VOXELS,
                 layers=False,
             )  # fmt: skip
-            volume = Volume(_scalars(path, answer, values, hounsfield), _frame(path, answer))
+            frame = _frame(path, answer)
+            volume = Volume(_scalars(path, answer, values, hounsfield), frame)
     try:
         _check_size(volume)
         return _in_hounsfield(volume.along_lps(), hounsfield)
