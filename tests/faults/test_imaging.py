@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""CT pictures, series, segmentations and landmarks that cannot be used are refused in a sentence."""
+"""CT pictures, series, segmentations and landmarks that cannot be used are refused."""
 
 from __future__ import annotations
 
@@ -185,8 +185,8 @@ def test_damaged_and_unfitting_files_are_refused(tmp_path: Path, child: Child) -
     nan[2, 2, 2] = np.nan
     read(["1 voxels are NaN"], fresh("nan", values=nan))
     read(["no Hounsfield units"], fresh("huge", values=values.astype(np.float32) * 400))
-    read(["longer than any person"], image(tmp_path / "m.nrrd", values, Frame([400] * 3, [0] * 3,
-                                                                              np.eye(3))))  # fmt: skip
+    metres = image(tmp_path / "m.nrrd", values, Frame([400] * 3, [0] * 3, np.eye(3)))
+    read(["longer than any person"], metres)
     read(["too thin"], image(tmp_path / "t.nrrd", values, Frame([0.004] * 3, [0] * 3, np.eye(3))))
     read(["one file", "folder"], fresh("series"), series="1.2")
     read(["positive slope"], fresh("slope"), hounsfield=(0, 1))
@@ -291,7 +291,7 @@ def test_heads_that_cannot_be_labelled(head: Volume) -> None:
     over = head.with_values(head.values[::-1])
     refused(["upside down", "skull="], labels, over)
     crown = head.cropped(np.array([0, 0, 45]), np.array(head.shape))
-    refused(["lower jaw is not in view"], labels, crown)
+    refused(["105 mm below", "chin is not in view"], labels, crown)
     air = head.with_values(np.full_like(head.values, -1000))
     refused(["0 cm3"], labels, air)
 

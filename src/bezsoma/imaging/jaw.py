@@ -23,8 +23,10 @@ STEP = 0.2
 """mm: widths closer than this count as equal, and distance decides."""
 CROWN = 80.0
 """mm: so far below its top there is nothing but skull."""
-VAULT = (85.0, 230.0)
-"""mm: from how wide and long to how wide and long a vault is."""
+CAP = 20.0
+"""mm below the top of the skull, where its vault is broad and a spine is not."""
+VAULT = (65.0, 230.0)
+"""mm: from how wide and long to how wide and long the vault is there."""
 TALLEST = 245.0
 """mm: a chin lies no further below the top of the skull."""
 BAND = 15.0
@@ -59,7 +61,7 @@ def seeds(found: Bools, frame: Frame, settings: LabelSettings) -> Seeds:
         skull = _seed(settings.skull, "skull", index, points)
     else:
         skull = index[points[:, 2] > points[:, 2].max() - CROWN]
-        _check_crown(frame.points(skull))
+        _check_cap(points[points[:, 2] > points[:, 2].max() - CAP])
     if settings.chin is not None:
         chin = _seed(settings.chin, "chin", index, points)
     else:
@@ -80,12 +82,12 @@ def _seed(point: tuple[float, float, float], name: str, index: Ints, points: Flo
     return np.asarray(index[gap <= 3])
 
 
-def _check_crown(points: Floats) -> None:
+def _check_cap(points: Floats) -> None:
     """Refuses a top (m, 3) that is no vault: a neck, or half a head."""
     x, y, _ = np.ptp(points, axis=0)
     if not (VAULT[0] <= x <= VAULT[1] and VAULT[0] <= y <= VAULT[1]):
         raise InputError(
-            f"the uppermost {CROWN:g} mm of bone measure {x:.4g} mm from side to side and {y:.4g} "
+            f"the uppermost {CAP:g} mm of bone measure {x:.4g} mm from side to side and {y:.4g} "
             f"from front to back, a vault of a skull {VAULT[0]:g} to {VAULT[1]:g}: the head is "
             "upside down, not upright, or its top is not in view; say skull=(x, y, z) and chin=, "
             "points in their bone (mm, LPS)"
