@@ -7,7 +7,7 @@ condyle is wider than the patch where the condyle touches, a root wider than whe
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.errors import InputError
+from bezsoma.imaging.bone import MARROW_HU, marrow
 from bezsoma.imaging.head_mask import distance
 from bezsoma.imaging.settings import LabelSettings
 from bezsoma.imaging.volume import Frame
@@ -148,6 +149,31 @@ def mandible(found: Bools, frame: Frame, settings: LabelSettings) -> tuple[Bools
             "bone=, or give a segmentation"
         )
     return jaw, bridge
+
+
+def with_marrow(jaw: Bools, values: Any, spacing: Floats, settings: LabelSettings) -> Bools:
+    """The mandible with the marrow behind cortex that is thin or open in places.
+
+    Apart from the skull it can be closed, by a ball of radius `cortex`, without growing to it; what
+    then is a hole is marrow, and so are the gaps of the cortex beside it.
+    """
+    if settings.cortex == 0 or not jaw.any():
+        return jaw
+    room = np.ceil(2 * settings.cortex / spacing[::-1]).astype(int)
+    box = tuple(
+        slice(max(s.start - n, 0), s.stop + n)
+        for s, n in zip(ndimage.find_objects(jaw.astype(np.int8))[0], room, strict=True)
+    )
+    part, hounsfield = jaw[box], values[box]
+    near = distance(~part, spacing) <= settings.cortex
+    closed = (distance(near, spacing) > settings.cortex) | part
+    wide = replace(settings, marrow=4 * settings.marrow)
+    inside = marrow(closed, hounsfield, spacing, wide) & ~closed
+    if inside.any():
+        inside |= closed & (distance(~inside, spacing) <= settings.cortex)
+    whole = jaw.copy()
+    whole[box] |= inside & (hounsfield > MARROW_HU)
+    return whole
 
 
 def flooded(width: Any, start: Seeds) -> tuple[Any, float]:

@@ -11,7 +11,7 @@ from bezsoma.arrays import Bools, Ints
 from bezsoma.errors import InputError
 from bezsoma.imaging import bone as bones
 from bezsoma.imaging.head_mask import around_head, body, hollows
-from bezsoma.imaging.jaw import mandible
+from bezsoma.imaging.jaw import mandible, with_marrow
 from bezsoma.imaging.meaning import AIR, BONE, CAVITY, FAT, MANDIBLE, MUSCLE, NAMES, SOFT
 from bezsoma.imaging.reading import Segmentation
 from bezsoma.imaging.settings import LabelSettings
@@ -79,7 +79,11 @@ def labels(
     notes += _metal(part, solid, settings)
     values[found] = BONE
     if settings.mandible:
-        values[_jaw(found, part.frame, settings, masks, notes)] = MANDIBLE
+        jaw = _jaw(found, part.frame, settings, masks, notes)
+        if "mandible" not in masks:
+            grown = with_marrow(jaw, quiet, part.frame.spacing, settings)
+            jaw |= grown & (values == SOFT)
+        values[jaw] = MANDIBLE
     if settings.tissues:
         _tissues(values, quiet, settings)
     return Labels(values, part.frame, settings, low, tuple(notes))

@@ -37,6 +37,8 @@ class LabelSettings:
     """mm: how far nearby is."""
     marrow: float = 80.0
     """mm2: smaller holes of bone in a slice are marrow or nerve canals, and count as bone."""
+    cortex: float = 2.0
+    """mm: gaps of the mandible's cortex that a ball of this radius closes keep its marrow in."""
     speck: float = 30.0
     """mm3: smaller pieces of bone are noise."""
     quiet: float = 30.0
@@ -59,7 +61,7 @@ class LabelSettings:
     """mm: a point in the bone of the skull, likewise."""
 
     def __post_init__(self) -> None:
-        for name in ("thin", "sealed", "marrow", "speck", "reach", "quiet", "streaks"):
+        for name in ("thin", "sealed", "marrow", "cortex", "speck", "reach", "quiet", "streaks"):
             value = getattr(self, name)
             if not (np.isfinite(value) and 0 <= value <= 1000):
                 raise InputError(f"{name}={value}: a number from 0 to 1000 is needed")
