@@ -14,7 +14,7 @@ import numpy as np
 
 from bezsoma.errors import InputError
 from bezsoma.imaging.child import Child
-from bezsoma.imaging.dicom import Series, read_series, series_in
+from bezsoma.imaging.dicom import read_series, series_in
 from bezsoma.imaging.volume import Frame, Grid, Volume
 
 FORMATS = {
@@ -88,7 +88,7 @@ def dicom_series(folder: str | os.PathLike[str]) -> list[str]:
     if not place.is_dir():
         raise InputError(f"{folder} is a file; a folder of DICOM slices is needed")
     with Child() as reader:
-        return [str(found) for found in _listed(place, reader)]
+        return [str(found) for found in series_in(place, reader)]
 
 
 def read_segmentation(
@@ -188,10 +188,6 @@ class _Lent:
 
     def __exit__(self, *_: object) -> None:
         return None
-
-
-def _listed(place: Path, reader: Child) -> list[Series]:
-    return series_in(place, reader)
 
 
 def _frame(path: object, answer: Mapping[str, Any]) -> Frame:
