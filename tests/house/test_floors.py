@@ -11,7 +11,7 @@ import pytest
 from house import floors
 from house.apart import python_on
 
-SPECIAL = ["meshio", "embreex", "matplotlib", "cyclopts", "rich"]
+SPECIAL = ["meshio", "embreex", "matplotlib", "cyclopts", "rich", "SimpleITK"]
 
 
 def test_no_floor_imports_from_above(root: Path) -> None:

@@ -28,6 +28,7 @@ class Mutant(NamedTuple):
 BERNSTEIN, MESH = "src/bezsoma/bernstein", "src/bezsoma/mesh"
 MECHANICS, EQUATIONS = "src/bezsoma/mechanics", "src/bezsoma/equations"
 SOLVERS, CORE = "src/bezsoma/solvers", "src/core"
+IMAGING = "src/bezsoma/imaging"
 
 ELEMENT = ("tests/laws/test_element.py", "tests/paper/test_equations.py")
 ASSEMBLED = ("tests/laws/test_assembled.py", "tests/paper/test_equations.py")
@@ -44,6 +45,8 @@ MESHES = (
     "tests/laws/test_mesh_shape.py",
     "tests/faults/test_meshes.py",
 )
+READING = ("tests/laws/test_imaging_reading.py",)
+LABELS = ("tests/laws/test_imaging_labels.py::test_labels_meet_the_truth[touching, noisy]",)
 LOADS = ("tests/laws/test_loads.py", "tests/paper/test_equations.py")
 MIXED = ("tests/laws/test_mixed.py",)
 PRESSURE = ("tests/paper/test_mixed_equations.py", "tests/twins/test_taylor_hood.py")
@@ -415,6 +418,62 @@ PYTHON = (
         "_plain(modes / size[:, None])",
         "_plain(modes)",
         MIXED,
+    ),
+    Mutant(
+        "slices of a tilted gantry moved the wrong way",
+        f"{IMAGING}/dicom.py",
+        "ndimage.shift(s, o[::-1]",
+        "ndimage.shift(s, -o[::-1]",
+        READING,
+    ),
+    Mutant(
+        "the spacing of rows taken for that of columns",
+        f"{IMAGING}/dicom.py",
+        "Frame(np.array([columns, rows, step])",
+        "Frame(np.array([rows, columns, step])",
+        READING,
+    ),
+    Mutant(
+        "RAS to LPS as a mirror image instead of half a turn",
+        f"{IMAGING}/slicer.py",
+        "np.array([-1.0, -1, 1])",
+        "np.array([-1.0, 1, 1])",
+        READING,
+    ),
+    Mutant(
+        "an axis turned over without its origin",
+        f"{IMAGING}/volume.py",
+        "* (signs < 0)",
+        "* (signs > 0)",
+        READING,
+    ),
+    Mutant(
+        "partial volume with the sign of the level turned",
+        f"{IMAGING}/shapes.py",
+        "0.5 - level / ",
+        "0.5 + level / ",
+        ("src/bezsoma/imaging/shapes.py",),
+    ),
+    Mutant(
+        "bone to where any of it is, not to half-way",
+        f"{IMAGING}/bone.py",
+        "level_between(values, 0.5,",
+        "level_between(values, 0.1,",
+        LABELS,
+    ),
+    Mutant(
+        "the mandible by distance alone, not by the widest bridge",
+        f"{IMAGING}/jaw.py",
+        "np.arange(np.ceil(flat.max() / STEP), -1, -1)",
+        "np.arange(0, -1, -1)",
+        LABELS,
+    ),
+    Mutant(
+        "a windpipe that is open where the picture ends",
+        f"{IMAGING}/head_mask.py",
+        "for face in (parts[-1], parts[:, 0]",
+        "for face in (parts[0], parts[-1], parts[:, 0]",
+        ("tests/laws/test_imaging_labels.py::test_hollows_are_apart_or_tissue_as_stated",),
     ),
 )
 

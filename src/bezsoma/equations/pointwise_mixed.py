@@ -11,7 +11,7 @@ import numpy as np
 from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats
 from bezsoma.equations.inadmissible import refuse_inadmissible
-from bezsoma.equations.matrix_free import first_controls, walk
+from bezsoma.equations.matrix_free import walk
 from bezsoma.mesh.control_net import ControlNet
 
 
@@ -64,7 +64,7 @@ class PointwiseMixed:
             self.threads,
             self.instructions,
             pressure_degree=self.pressures.degree,
-            first_pressure=first_controls(self.pressures, self.net.morton),
+            first_pressure=self.pressures.walked(),
         )
 
     @property

@@ -1,8 +1,37 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From pictures of a head to tets: for now the head phantom, which needs no picture."""
+"""From pictures of a head to labels; and phantoms, which need no picture."""
 
 from __future__ import annotations
 
+from bezsoma.imaging.head_ct import HeadCt, head_ct
+from bezsoma.imaging.labelling import Labels, labels
+from bezsoma.imaging.nrrd import write_segmentation, write_volume
 from bezsoma.imaging.phantom import head_phantom, landmarks
+from bezsoma.imaging.plates import label_plates, legend
+from bezsoma.imaging.reading import Segmentation, dicom_series, read_segmentation, read_volume
+from bezsoma.imaging.settings import LabelSettings
+from bezsoma.imaging.slicer import read_landmarks, write_landmarks, write_surface
+from bezsoma.imaging.volume import Frame, Volume
 
-__all__ = ["head_phantom", "landmarks"]
+__all__ = [
+    "Frame",
+    "HeadCt",
+    "LabelSettings",
+    "Labels",
+    "Segmentation",
+    "Volume",
+    "dicom_series",
+    "head_ct",
+    "head_phantom",
+    "label_plates",
+    "labels",
+    "landmarks",
+    "legend",
+    "read_landmarks",
+    "read_segmentation",
+    "read_volume",
+    "write_landmarks",
+    "write_segmentation",
+    "write_surface",
+    "write_volume",
+]

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A folder of DICOM slices to one volume: which series, in what order, and whether it is a CT.
+
+Nothing is guessed about where a slice lies: position and direction of each come from its header.
+What can be mended by resampling is mended with a word; what would be an invention is refused.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+
+from bezsoma.arrays import Floats
+from bezsoma.errors import InputError, unknown
+from bezsoma.imaging.child import Child
+from bezsoma.imaging.volume import Frame, Grid, Volume
+
+SAME_PLACE = 0.01
+"""Slices closer than this, in mm, are one and the same."""
+EVEN = 0.02
+"""How far gaps may differ from the median, relative, to count as even."""
+MISSING = 1.5
+"""A gap larger than so many medians means that a slice is missing."""
+TURNED = 1e-3
+"""How far directions of slices may differ, as cosines, to count as one."""
+FEWEST = 8
+"""With fewer slices there is no volume, but a topogram or a report."""
+
+
+@dataclass(frozen=True)
+class Series:
+    """One series of a folder: its name (a UID), what the scanner called it, files, modality."""
+
+    name: str
+    about: str
+    modality: str
+    headers: tuple[Mapping[str, Any], ...]
+
+    def __str__(self) -> str:
+        about = f" ({self.about})" if self.about else ""
+        return f"{self.name}: {len(self.headers)} slices of {self.modality or 'no modality'}{about}"
+
+
+def series_in(folder: Path, child: Child) -> list[Series]:
+    """The series of a folder, the largest first."""
+    paths = sorted(p for p in folder.rglob("*") if p.is_file() and p.name != "DICOMDIR")
+    if not paths:
+        raise InputError(f"{folder}: the folder is empty; a folder of DICOM files is needed")
+    answer, _ = child.answer(str(folder), what="headers", paths=[str(p) for p in paths])
+    groups: dict[str, list[dict[str, Any]]] = {}
+    people = set()
+    for path, header in zip(paths, answer["headers"], strict=True):
+        if header is not None:
+            people.add(header.pop("person"))
+            groups.setdefault(header["series"], []).append(header | {"path": str(path)})
+    if not groups:
+        raise InputError(
+            f"{folder}: none of its {len(paths)} files is a DICOM image; a folder of slices is "
+            "needed (other formats are given as a file: .nrrd, .nii, .nii.gz, .mha, .mhd)"
+        )
+    if len(people) > 1:
+        raise InputError(
+            f"{folder}: it holds images of {len(people)} patients; keep one patient's in a folder"
+        )
+    found = [
+        Series(name, group[0]["about"], group[0]["modality"], tuple(group))
+        for name, group in groups.items()
+    ]
+    return sorted(found, key=lambda s: (-len(s.headers), s.name))
+
+
+def read_series(folder: Path, child: Child, series: str | None, interpolate: bool) -> Volume:
+    """The volume (HU) of one series of a folder; `series` is its UID or what it is called."""
+    chosen = _chosen(folder, series_in(folder, child), series)
+    where = str(folder)
+    try:
+        headers, notes = _ordered(_images_of(chosen))
+        _check_ct(chosen.modality, headers)
+        _, values = child.answer(where, what="slices", paths=[header["path"] for header in headers])
+        assert values is not None
+        return _volume(values, headers, notes, interpolate)
+    except InputError as error:
+        text = str(error)
+        raise InputError(text if text.startswith(where) else f"{where}: {text}") from None
+
+
+def _chosen(folder: Path, found: Sequence[Series], wanted: str | None) -> Series:
+    """The one that was asked for, or the only CT with enough slices."""
+    if wanted is not None:
+        fits = [s for s in found if wanted in (s.name, s.about)]
+        if not fits:
+            raise InputError(unknown("series", wanted, [s.name for s in found], str(folder)))
+        if len(fits) == 1:
+            return fits[0]
+        found = fits
+    volumes = [s for s in found if len(s.headers) >= FEWEST and s.modality == "CT"] or found
+    if len(volumes) > 1:
+        listed = "; ".join(map(str, volumes))
+        raise InputError(
+            f"{folder}: it holds several series: {listed}. Say which one with series=, by its "
+            "number or by what it is called"
+        )
+    return volumes[0]
+
+
+def _images_of(series: Series) -> list[Mapping[str, Any]]:
+    """Its slices without the topogram, which shows the head from the side in the same series."""
+    return [h for h in series.headers if "LOCALIZER" not in h["kind"].upper()]
+
+
+def _check_ct(modality: str, headers: Sequence[Mapping[str, Any]]) -> None:
+    """Refuses what is no CT in Hounsfield units."""
+    first = headers[0]
+    if modality != "CT":
+        raise InputError(
+            f"the series is of modality {modality or 'unknown'}, not CT; only a CT has Hounsfield "
+            "units, by which bone and skin are found (segment other pictures elsewhere, such as "
+            "in 3D Slicer, and give the segmentation)"
+        )
+    if any(header["samples"] not in ("", "1") for header in headers):
+        raise InputError("its slices are in colour: pictures of a CT, not the CT; export the CT")
+    if any(header["bits"] == "8" for header in headers):
+        raise InputError(
+            "its slices have 8 bits a pixel: pictures of a CT without Hounsfield units; export "
+            "the original slices (16 bits)"
+        )
+    if any(not header["slope"] or not header["intercept"] for header in headers):
+        raise InputError(
+            "slices without rescale slope and intercept have no Hounsfield units; export the "
+            "original slices"
+        )
+    if first["frames"] not in ("", "1"):
+        raise InputError(
+            "it is one file of many frames (enhanced CT), which is not read; convert it to NRRD "
+            "with 3D Slicer"
+        )
+
+
+def _numbers(header: Mapping[str, Any], tag: str, count: int) -> Floats:
+    """Finite numbers of a tag, or a refusal that names it."""
+    try:
+        values = np.array([float(word) for word in header[tag].split("\\")])
+    except ValueError:
+        values = np.empty(0)
+    if values.shape != (count,) or not np.isfinite(values).all():
+        name = Path(header["path"]).name
+        raise InputError(
+            f"slice {name} has no usable {tag} ({header[tag][:60] or 'missing'}); without it nobody"
+            " knows where it lies: export the original slices"
+        )
+    return values
+
+
+def _ordered(images: list[Mapping[str, Any]]) -> tuple[list[Mapping[str, Any]], list[str]]:
+    """The slices from one end to the other, by position along their normal; and what was odd."""
+    if len(images) < FEWEST:
+        raise InputError(
+            f"the series has {len(images)} slices; a volume needs at least {FEWEST} (a topogram or "
+            "a report is none)"
+        )
+    turns = np.array([_numbers(h, "directions", 6) for h in images])
+    off = np.abs(turns - np.median(turns, axis=0)).max(axis=1) > TURNED
+    if off.any():
+        raise InputError(
+            f"{int(off.sum())} of {len(images)} slices lie in another direction than the rest (a "
+            "topogram, or a reformatted view); keep slices of one direction in a folder"
+        )
+    sizes = Counter((h["rows"], h["columns"], h["spacing"]) for h in images)
+    if len(sizes) > 1:
+        listed = ", ".join(f"{n} of {r} x {c} at {s} mm" for (r, c, s), n in sizes.items())
+        raise InputError(f"slices of different size are mixed ({listed}); keep those of one size")
+    normal = np.cross(turns[0, :3], turns[0, 3:])
+    along = np.array([_numbers(h, "position", 3) for h in images]) @ normal
+    order = np.argsort(along, kind="stable")
+    notes = [] if len(images) == 0 else _tilt_note(images[0])
+    return [images[i] for i in order], notes
+
+
+def _tilt_note(header: Mapping[str, Any]) -> list[str]:
+    try:
+        tilt = float(header["tilt"] or 0)
+    except ValueError:
+        return []
+    return [f"the gantry was tilted by {tilt:g} degrees"] if abs(tilt) > 0.01 else []
+
+
+def _volume(
+    values: Grid, headers: Sequence[Mapping[str, Any]], notes: list[str], interpolate: bool
+) -> Volume:
+    """Slices (k, rows, columns) in order to a volume on an even grid."""
+    turn = _numbers(headers[0], "directions", 6).reshape(2, 3)
+    axes = np.column_stack([*turn, np.cross(*turn)])
+    places = np.array([_numbers(h, "position", 3) for h in headers])
+    values, places = _without_doubles(values, places, axes[:, 2], notes)
+    rows, columns = _numbers(headers[0], "spacing", 2)
+    gaps = np.diff(places @ axes[:, 2])
+    step = float(np.median(gaps))
+    _check_gaps(gaps, step, interpolate, notes)
+    values = _sheared_back(values, places, axes, (columns, rows), notes)
+    if np.abs(gaps / step - 1).max() > EVEN:
+        values = _evened(values, places @ axes[:, 2], step)
+    frame = Frame(np.array([columns, rows, step]), places[0], axes)
+    return Volume(values, frame, tuple(notes))
+
+
+def _without_doubles(
+    values: Grid, places: Floats, normal: Floats, notes: list[str]
+) -> tuple[Grid, Floats]:
+    """Slices at places of their own: equal doubles are dropped, different ones refused."""
+    double = np.flatnonzero(np.diff(places @ normal) < SAME_PLACE) + 1
+    differ = [k for k in double if not np.array_equal(values[k], values[k - 1])]
+    if differ:
+        raise InputError(
+            f"{len(differ)} slices lie where another one lies and show something else: two "
+            "acquisitions or reconstructions in one series; keep one of them in the folder"
+        )
+    if len(double):
+        notes.append(f"{len(double)} slices were there twice; one of each was taken")
+    keep = np.setdiff1d(np.arange(len(places)), double)
+    return values[keep], places[keep]
+
+
+def _check_gaps(gaps: Floats, step: float, interpolate: bool, notes: list[str]) -> None:
+    wide = gaps > MISSING * step
+    if wide.any() and not interpolate:
+        first = int(np.flatnonzero(wide)[0])
+        raise InputError(
+            f"slices are missing: after slice {first + 1} the next one follows at "
+            f"{gaps[first]:.4g} mm, elsewhere at {step:.4g} mm ({int(wide.sum())} such gaps); copy "
+            "the series again, or say interpolate=True to have them filled between neighbours"
+        )
+    if wide.any():
+        notes.append(f"{int(wide.sum())} gaps of up to {gaps.max():.4g} mm were interpolated")
+    elif np.abs(gaps / step - 1).max() > EVEN:
+        notes.append(
+            f"slices lie {gaps.min():.4g} to {gaps.max():.4g} mm apart; resampled to {step:.4g} mm"
+        )
+
+
+def _sheared_back(
+    values: Grid, places: Floats, axes: Floats, spacing: tuple[float, float], notes: list[str]
+) -> Grid:
+    """Slices moved within their planes to stand square on each other, as a tilted gantry's not."""
+    offset = (places - places[0]) @ axes[:, :2] / spacing
+    if np.abs(offset).max() < 0.1:
+        return values
+    most = float(np.abs(offset * spacing).max())
+    notes.append(f"slices do not stand square on each other: moved back by up to {most:.4g} mm")
+    return np.stack([
+        ndimage.shift(s, o[::-1], order=1, mode="nearest")
+        for s, o in zip(values, offset, strict=True)
+    ])  # fmt: skip
+
+
+def _evened(values: Grid, along: Floats, step: float) -> Grid:
+    """Values at even steps, linear between slices."""
+    count = int(np.floor((along[-1] - along[0]) / step + 1e-6)) + 1
+    where = np.interp(along[0] + step * np.arange(count), along, np.arange(len(along)))
+    below = np.minimum(where.astype(np.int64), len(along) - 2)
+    part = (where - below)[:, None, None].astype(np.float32)
+    return np.asarray((1 - part) * values[below] + part * values[below + 1])
