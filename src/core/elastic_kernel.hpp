@@ -20,6 +20,11 @@
 #error "BEZSOMA_ISA names the namespace of one instruction set"
 #endif
 
+// A build that only looks for errors (.ci/run) may leave out what compiles slowly.
+#ifndef BEZSOMA_HIGHEST_DEGREE
+#define BEZSOMA_HIGHEST_DEGREE 10
+#endif
+
 /// Loops over the controls of degrees up to this one are written out for the compiler.
 #define BEZSOMA_UNROLL 2
 #define BEZSOMA_LADDER 4

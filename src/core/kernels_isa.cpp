@@ -91,11 +91,6 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
 
 constexpr int lanes64 = BEZSOMA_BYTES / 8, lanes32 = BEZSOMA_BYTES / 4;
 
-// A build that only looks for errors (.ci/run) may leave out what compiles slowly.
-#ifndef BEZSOMA_HIGHEST_DEGREE
-#define BEZSOMA_HIGHEST_DEGREE 10
-#endif
-
 template <int n, class T, int lanes> static constexpr Kernel<T> kernel_of_degree() {
     if constexpr (n <= BEZSOMA_HIGHEST_DEGREE)
         return {apply<n, T, lanes>, apply_many<n, T, lanes>, work<n, T, lanes>};

@@ -10,25 +10,29 @@
 
 namespace bezsoma::BEZSOMA_ISA {
 
-#define BEZSOMA_MIXED(n)                                                                           \
-    {mixed_apply<n, BEZSOMA_BYTES / 8>, mixed_couple<n, BEZSOMA_BYTES / 8>,                        \
-     mixed_work<n, BEZSOMA_BYTES / 8>}
-#define BEZSOMA_PRESSURE(m)                                                                        \
-    {on_pressure<m, BEZSOMA_BYTES / 8, OnPressure::mass>,                                          \
-     on_pressure<m, BEZSOMA_BYTES / 8, OnPressure::inverse>,                                       \
-     on_pressure<m, BEZSOMA_BYTES / 8, OnPressure::diagonal>}
+template <int n> static constexpr MixedKernel form_of_degree() {
+    constexpr int lanes = BEZSOMA_BYTES / 8;
+    if constexpr (n >= 2 && n <= BEZSOMA_HIGHEST_DEGREE)
+        return {mixed_apply<n, lanes>, mixed_couple<n, lanes>, mixed_work<n, lanes>};
+    else
+        return {};
+}
+
+template <int m> static constexpr PressureKernel pressure_of_degree() {
+    constexpr int lanes = BEZSOMA_BYTES / 8;
+    if constexpr (m < BEZSOMA_HIGHEST_DEGREE)
+        return {on_pressure<m, lanes, OnPressure::mass>, on_pressure<m, lanes, OnPressure::inverse>,
+                on_pressure<m, lanes, OnPressure::diagonal>};
+    else
+        return {};
+}
 
 extern const MixedKernels mixed_kernels;
 constinit const MixedKernels mixed_kernels = {
-    {{},
-     BEZSOMA_MIXED(2),
-     BEZSOMA_MIXED(3),
-     BEZSOMA_MIXED(4),
-     BEZSOMA_MIXED(5),
-     BEZSOMA_MIXED(6),
-     BEZSOMA_MIXED(7),
-     BEZSOMA_MIXED(8)},
-    {BEZSOMA_PRESSURE(1), BEZSOMA_PRESSURE(2), BEZSOMA_PRESSURE(3), BEZSOMA_PRESSURE(4),
-     BEZSOMA_PRESSURE(5), BEZSOMA_PRESSURE(6), BEZSOMA_PRESSURE(7)}};
+    {form_of_degree<1>(), form_of_degree<2>(), form_of_degree<3>(), form_of_degree<4>(),
+     form_of_degree<5>(), form_of_degree<6>(), form_of_degree<7>(), form_of_degree<8>()},
+    {pressure_of_degree<1>(), pressure_of_degree<2>(), pressure_of_degree<3>(),
+     pressure_of_degree<4>(), pressure_of_degree<5>(), pressure_of_degree<6>(),
+     pressure_of_degree<7>()}};
 
 } // namespace bezsoma::BEZSOMA_ISA

@@ -229,14 +229,17 @@ template <Asked asked, class T, int lanes> double pointwise(PointwiseBatches<T> 
 }
 
 template <int n, class T, int lanes> static constexpr NetKernel<T> net_kernel() {
-    NetKernel<T> kernel{{opened<n, 6, T, lanes>, opened<n, 9, T, lanes>},
-                        {closed<n, 6, T, lanes>, closed<n, 9, T, lanes>},
-                        nullptr,
-                        nullptr,
-                        entities(n)};
-    if constexpr (n >= 2 && n <= highest_mixed_degree && sizeof(T) == 8) {
-        kernel.open_pressure = opened_pressure<n, lanes>;
-        kernel.close_pressure = closed_pressure<n, lanes>;
+    NetKernel<T> kernel{};
+    if constexpr (n <= BEZSOMA_HIGHEST_DEGREE) {
+        kernel = {{opened<n, 6, T, lanes>, opened<n, 9, T, lanes>},
+                  {closed<n, 6, T, lanes>, closed<n, 9, T, lanes>},
+                  nullptr,
+                  nullptr,
+                  entities(n)};
+        if constexpr (n >= 2 && n <= highest_mixed_degree && sizeof(T) == 8) {
+            kernel.open_pressure = opened_pressure<n, lanes>;
+            kernel.close_pressure = closed_pressure<n, lanes>;
+        }
     }
     return kernel;
 }
