@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -79,8 +79,11 @@ def loaded(
     fails is halved, and one that took few iterations lets the next be twice as long.
     """
     path: list[Iteration] = []
+    failed: list[str] = []
 
     def record(iteration: Iteration) -> None:
+        if failed:
+            iteration = replace(iteration, events=(failed.pop(), *iteration.events))
         path.append(iteration)
         tell(iteration)
 
@@ -92,6 +95,7 @@ def loaded(
             x = equilibrium(system, x, target, number, rule, record)
         except StepFailed as failure:
             length /= 2
+            failed[:] = [f"{100 * target:.4g} % of the load was tried in vain: {failure}"]
             if steps is not None or length < SHORTEST:
                 return Reached(x, fraction, tuple(path), target, str(failure))
         else:
