@@ -11,6 +11,8 @@ import pytest
 
 import bezsoma as bz
 from bezsoma.solvers import memory
+from bezsoma.solvers.load_steps import loaded
+from bezsoma.solvers.newton import Balance, Breakdown, Correction, Rule, System
 
 REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: bz.Stiffening(0, 0.3, 5), "E of Stiffening = 0 MPa: it must be positive"),
@@ -174,6 +176,40 @@ def test_what_does_not_fit_is_refused(solver: str, monkeypatch: pytest.MonkeyPat
             bz.solve(body(**more), solver=solver)
 
 
+class Slope:
+    """The tangent of x = t, which fails beyond some t."""
+
+    def __init__(self, fails: bool) -> None:
+        self.fails = fails
+
+    def product(self, dx: Any) -> Any:
+        return dx
+
+    def solve(self, b: Any, rtol: float) -> Correction:
+        if self.fails:
+            raise Breakdown("no correction")
+        return Correction(b, 1)
+
+
+@pytest.mark.parametrize("doubt", ["", "the law has lost strong ellipticity"])
+def test_halving_ends_early_where_ellipticity_is_lost(doubt: str) -> None:
+    """Beyond 0.6 the tangent fails: found to a thousandth, or only to an eighth."""
+    system = System(
+        np.zeros(1, bool),
+        (slice(0, 1),),
+        (1.0,),
+        lambda t: np.zeros(1),
+        lambda x, t: Balance(t - x, (t,), 1.0),
+        lambda x, t: Slope(t > 0.6),
+        lambda x: doubt,
+    )
+    reached = loaded(system, np.zeros(1), None, Rule(1e-10), lambda each: None)
+    assert reached.fraction == reached.x[0]
+    assert doubt in reached.why and "no correction" in reached.why
+    assert 0.6 - (0.25 if doubt else 0.002) < reached.fraction <= 0.6
+    assert (len(reached.path) < 4) == bool(doubt)
+
+
 def test_what_went_otherwise_is_in_the_path() -> None:
     """The first guess turns tets inside out; the path says where, and what was made of it."""
     with pytest.raises(bz.NotConverged) as failure:
@@ -186,7 +222,7 @@ def test_what_went_otherwise_is_in_the_path() -> None:
 def test_tangent_that_is_not_positive_is_told() -> None:
     """A column squeezed beyond where it buckles: straight it stays, its tangent is not."""
     mesh = bz.block(size=(1.0, 1.0, 12.0), cells=(1, 1, 8))
-    squeezed = bz.Moved("top", translation=(0, 0, -0.35))
+    squeezed = bz.Moved("top", translation=(0, 0, -1.2))
     law = bz.NeoHooke(1.0, 0.3)
     found = bz.solve(
         bz.Body(mesh, 2, law, [bz.Fixed("bottom"), squeezed]), solver="multigrid", steps=1

@@ -44,6 +44,10 @@ class StepFailed(BezSomaError):
     """Equilibrium was not found at a fraction of the load: the message says why."""
 
 
+class TangentFailed(StepFailed):
+    """It was not, because no correction could be found."""
+
+
 @dataclass(frozen=True, eq=False)
 class Balance:
     """Applied minus internal forces r (n,), and what they are measured by.
@@ -92,6 +96,8 @@ class System:
     given: Callable[[float], Floats]
     balance: Callable[[Floats, float], Balance]
     tangent: Callable[[Floats, float], Linearised]
+    doubt: Callable[[Floats], str] = lambda x: ""
+    """What the material has lost at x, and where; nothing where it is sound."""
 
 
 @dataclass(frozen=True)
@@ -258,7 +264,7 @@ def equilibrium(
         try:
             dx, linear, event = tangent.solve(b, eta)
         except Breakdown as failure:
-            raise StepFailed(str(failure)) from failure
+            raise TangentFailed(str(failure)) from failure
         dx += jump
         step.events += [event] if event else []
         try:

@@ -11,6 +11,7 @@ import numpy as np
 
 from bezsoma.arrays import Floats, frozen
 from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.ellipticity import lost_ellipticity
 from bezsoma.equations.internal import internal_forces
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.nonlinear import NonlinearEquations, nonlinear_equations
@@ -211,6 +212,7 @@ def _system(
         lambda fraction: equations.given(fraction).ravel(),
         lambda x, fraction: _balance(equations, internal, x, fraction),
         tangent,
+        lambda x: lost_ellipticity(pointwise, x.reshape(-1, 3)),
     )
 
 

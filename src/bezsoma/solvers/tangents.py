@@ -17,6 +17,7 @@ from bezsoma.equations.pointwise import Pointwise, Tangent
 from bezsoma.equations.tangent_matrix import tangent_matrix
 from bezsoma.errors import NotConverged
 from bezsoma.solvers.bicgstab import stabilised
+from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.krylov import conjugate_gradients
 from bezsoma.solvers.newton import Breakdown, Correction, Linearised
 
@@ -77,7 +78,11 @@ class Applied:
         return out
 
     def solve(self, b: Floats, rtol: float) -> Correction:
-        """The free dx (n,), by conjugate gradients where that can be, else by BiCGStab."""
+        """The free dx (n,), by conjugate gradients or, not symmetric, by BiCGStab.
+
+        GMRES takes over where a symmetric tangent is not positive, as beyond buckling: BiCGStab
+        stands still there.
+        """
         size = float(np.abs(b).max())
         if size == 0:
             return Correction(np.zeros_like(b), 0)
@@ -89,17 +94,24 @@ class Applied:
         return Correction(x.ravel() * size, count, event)
 
     def _solved(self, b: Floats, rtol: float) -> Correction:
-        event = ""
-        if self.symmetric:
-            try:
-                x, history = conjugate_gradients(
-                    self._free_product, self.precondition, b, rtol, MOST_ITERATIONS
-                )
-                return Correction(x, len(history) - 1)
-            except NotConverged as failure:  # BiCGStab needs no positive tangent
-                event = f"BiCGStab solved where conjugate gradients did not: {failure}"
-        x, count = stabilised(self._free_product, self.precondition, b, rtol, MOST_ITERATIONS)
-        return Correction(x, count, event)
+        if not self.symmetric:
+            x, count = stabilised(self._free_product, self.precondition, b, rtol, MOST_ITERATIONS)
+            return Correction(x, count)
+        try:
+            x, history = conjugate_gradients(
+                self._free_product, self.precondition, b, rtol, MOST_ITERATIONS
+            )
+            return Correction(x, len(history) - 1)
+        except NotConverged as failure:
+            event = f"GMRES solved where conjugate gradients did not: {failure}"
+        flat, count = minimal_residual(
+            lambda v: self._free_product(v.reshape(-1, 3)).ravel(),
+            lambda r: self.precondition(r.reshape(-1, 3)).ravel(),
+            b.ravel(),
+            rtol,
+            MOST_ITERATIONS,
+        )
+        return Correction(flat.reshape(-1, 3), count, event)
 
     def _free_product(self, x: Floats) -> Floats:
         out = self.product(x.ravel()).reshape(-1, 3)
