@@ -47,7 +47,7 @@ def history_picture(
     size: tuple[int, int] = (1000, 700),
     overwrite: bool = False,
 ) -> bytes:
-    """Residual and energy after each iteration as PNG, logarithmic; written if a path is given.
+    r"""Residual and energy after each iteration as PNG, logarithmic; written if a path is given.
 
     `history` is `solution.path`, or that of a `NotConverged`. Stripes are tries of a part of the
     load, with its percentage above: where a percentage falls, a longer step had failed.
@@ -55,7 +55,7 @@ def history_picture(
     >>> from types import SimpleNamespace as Each
     >>> path = [Each(step=1, fraction=1.0, residual=10.0**-k, energy=0.0) for k in (1, 2, 4, 8)]
     >>> history_picture(None, path)[:4]
-    b'\\x89PNG'
+    b'\x89PNG'
     """
     if not len(history):
         raise InputError(

@@ -33,6 +33,8 @@ from bezsoma.view.layout import Layout
 INK, PALE = "#22262b", "#7a828c"
 NOTICE = "Research software, not a medical device."
 _DPI = 100
+_BESIDE = 8
+"""So many names of bands have room beside each other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,17 +166,27 @@ def chart(
     points = unit * 72 / _DPI
     figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
     FigureCanvasAgg(figure)
-    axes = _axes(figure, 90 * unit, 56 * unit, width - 120 * unit, height - 150 * unit)
+    axes = _axes(figure, 90 * unit, 84 * unit, width - 120 * unit, height - 178 * unit)
+    whole = max([1, *(len(curve.values) for curve in curves)])
+    rotation = 90 if len(bands) > _BESIDE else 0
     for number, (start, end, name) in enumerate(bands):
         axes.axvspan(start, end, color="#eef0f2" if number % 2 else "white", zorder=0)
+        if rotation and end - start < 0.02 * whole:
+            continue  # a name would run into the next
         middle, top = (start + end) / 2, axes.get_xaxis_transform()
-        axes.text(middle, 1.01, name, transform=top, size=12 * points, color=PALE, ha="center")
+        look: dict[str, Any] = {
+            "size": 11 * points,
+            "color": PALE,
+            "ha": "center",
+            "rotation": rotation,
+        }
+        axes.text(middle, 1.01, name, transform=top, **look)
     for curve in curves:
         x = np.arange(1, len(curve.values) + 1)
         shown = np.where(curve.values > 0, curve.values, np.nan)
         style = "--" if curve.dashed else "-"
         axes.plot(x, shown, style, marker="o", ms=5 * points, color=curve.colour, label=curve.label)
-    axes.set(yscale="log", xlim=(0.5, max([1, *(len(c.values) for c in curves)]) + 0.5))
+    axes.set(yscale="log", xlim=(0.5, whole + 0.5))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel(across, size=15 * points, color=INK)
     axes.tick_params(labelsize=14 * points, color=INK, labelcolor=INK)
