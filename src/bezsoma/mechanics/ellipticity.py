@@ -40,6 +40,13 @@ def least_resistance(law: Law, H: Floats) -> Floats:
     >>> bool(abs(least_resistance(law, H) - 0.5 / 1.45).max() < 1e-14)
     True
 
+    Neo-Hooke's Q = mu I + (mu + lambda - lambda ln J) n n^T, n = F^-T m, resists by mu throughout:
+
+    >>> from bezsoma.mechanics.hyperelastic import NeoHooke
+    >>> sheared = np.array([[0.3, 0.5, 0.0], [-0.2, 0.1, 0.4], [0.0, 0.3, -0.2]])
+    >>> bool(abs(least_resistance(NeoHooke(E=1.0, nu=0.25), sheared[None]) - 0.4).max() < 1e-13)
+    True
+
     The paper's law loses it by volume strain, at nu = 0.45 and A = 5 never below 0.33:
 
     >>> H[:] = np.diag([1.0, 1.0, 1.0]) * np.array([0.1, 0.25, -0.25])[:, None, None]
