@@ -39,7 +39,7 @@ def cornered(degree: int) -> bz.Solution:
 
 
 class Jelly:
-    """Something that is a material, and not linear elasticity."""
+    """Something that is a material, and does not split into a shape and a volume."""
 
     linear = symmetric = True
 
@@ -96,7 +96,7 @@ REFUSED: dict[str, tuple[Given, tuple[str, ...]]] = {
     ),
     "another law": (
         lambda: body(law=Jelly(), incompressible=True),
-        ("Jelly", "linear elasticity", "leave pressure_degree out"),
+        ("Jelly", "cannot stand beside a pressure", "leave pressure_degree out", "NeoHooke"),
     ),
     "a net flux": (
         swollen,

@@ -23,10 +23,8 @@ from bezsoma.mesh.control_net import ControlNet
 class NonlinearEquations:
     """F(u) = t R(u) on the free components, u = g(t) on the others, t the fraction of the load.
 
-    What is out of balance is R - F (paper, eq. 26).
-
-    dead (c, 3) N are the loads that do not depend on u, `following` those that
-    do; `known` says what is held at the whole load.
+    What is out of balance is R - F (paper, eq. 26). dead (c, 3) N are the loads that do not depend
+    on u, `following` those that do; `known` says what is held at the whole load.
     """
 
     body: Body
@@ -82,7 +80,7 @@ def nonlinear_equations(
     >>> body = Body(block(), 2, law, [Fixed("bottom")], loads)
     >>> net = ControlNet(body.mesh, 2)
     >>> found = nonlinear_equations(body, net, prescribed(body, net))
-    >>> u = np.zeros((net.count, 3))
+    >>> u = 0 * net.points
     >>> found.applied(u, 0.5).sum(axis=0).round(12).tolist()
     [0.0, 0.0, -0.5]
     """
