@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from bezsoma.results import read_results as read_results
     from bezsoma.solvers.solution import Solution as Solution
     from bezsoma.solvers.solve import solve as solve
+    from bezsoma.view.history import history_picture as history_picture
     from bezsoma.view.picture import face_picture as face_picture
     from bezsoma.view.picture import picture as picture
     from bezsoma.view.vtk import write_vtu as write_vtu
@@ -96,6 +97,7 @@ HOMES = {
     "bezsoma.results": ["Results", "read_results"],
     "bezsoma.solvers.solution": ["Solution"],
     "bezsoma.solvers.solve": ["solve"],
+    "bezsoma.view.history": ["history_picture"],
     "bezsoma.view.picture": ["face_picture", "picture"],
     "bezsoma.view.vtk": ["write_vtu"],
 }

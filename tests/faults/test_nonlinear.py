@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
+from bezsoma.solvers import memory
+from bezsoma.solvers.load_steps import loaded
+from bezsoma.solvers.newton import Balance, Breakdown, Correction, Rule, System
 
 REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: bz.Stiffening(0, 0.3, 5), "E of Stiffening = 0 MPa: it must be positive"),
@@ -132,3 +135,98 @@ def test_user_law_that_gives_no_numbers_is_told_where() -> None:
     law = bz.FunctionLaw(lambda H: H + np.where(abs(H.real) > 0.05, np.nan, 0.0))
     with pytest.raises(bz.NotConverged, match="no finite number in tet"):
         bz.solve(body(law, (0, 0, 0.4)))
+
+
+SIDES = ("left", "right", "front", "back", "bottom", "top")
+
+
+def enclosed(law: Any, value: Any) -> bz.Solution:
+    """A block of incompressible tissue whose whole boundary is prescribed."""
+    held = [bz.Prescribed(*SIDES, value=bz.Polynomial.parse(value))]
+    return bz.solve(bz.Body(bz.block(cells=2), 2, law, held, incompressible=True))
+
+
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [(bz.NeoHooke(1.0, 0.5), "by 0.2 mm3"), (bz.Stiffening(1.0, 0.5, 5.0), "by 0.2 mm3")],
+)
+def test_enclosed_tissue_whose_volume_would_change(law: Any, said: str) -> None:
+    with pytest.raises(bz.InputError, match="whole boundary has prescribed") as refusal:
+        enclosed(law, ["0.2*x", 0, 0])
+    assert said in str(refusal.value)
+
+
+def test_enclosed_tissue_may_keep_its_volume_in_its_own_sense() -> None:
+    """1.25 * 0.8 = 1 at finite strain, 0.25 - 0.25 = 0 at small."""
+    finite, small = bz.NeoHooke(1.0, 0.5), bz.Stiffening(1.0, 0.5, 5.0)
+    exact, linear = ["0.25*x", "-0.2*y", 0], ["0.25*x", "-0.25*y", 0]
+    assert enclosed(finite, exact).residual <= 1e-10
+    assert enclosed(small, linear).residual <= 1e-10
+    with pytest.raises(bz.InputError, match=r"by -0\.0625 mm3"):
+        enclosed(finite, linear)
+    with pytest.raises(bz.InputError, match=r"by 0\.05 mm3"):
+        enclosed(small, exact)
+
+
+@pytest.mark.parametrize("solver", ["auto", "direct", "multigrid"])
+def test_what_does_not_fit_is_refused(solver: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory, "available", lambda: 1000)
+    for more in ({}, {"incompressible": True}):
+        with pytest.raises(bz.InputError, match="are free; take a lower degree"):
+            bz.solve(body(**more), solver=solver)
+
+
+class Slope:
+    """The tangent of x = t, which fails beyond some t."""
+
+    def __init__(self, fails: bool) -> None:
+        self.fails = fails
+
+    def product(self, dx: Any) -> Any:
+        return dx
+
+    def solve(self, b: Any, rtol: float) -> Correction:
+        if self.fails:
+            raise Breakdown("no correction")
+        return Correction(b, 1)
+
+
+@pytest.mark.parametrize("doubt", ["", "the law has lost strong ellipticity"])
+def test_halving_ends_early_where_ellipticity_is_lost(doubt: str) -> None:
+    """Beyond 0.6 the tangent fails: found to a thousandth, or only to an eighth."""
+    system = System(
+        np.zeros(1, bool),
+        (slice(0, 1),),
+        (1.0,),
+        lambda t: np.zeros(1),
+        lambda x, t: Balance(t - x, (t,), 1.0),
+        lambda x, t: Slope(t > 0.6),
+        lambda x: doubt,
+    )
+    reached = loaded(system, np.zeros(1), None, Rule(1e-10), lambda each: None)
+    assert reached.fraction == reached.x[0]
+    assert doubt in reached.why and "no correction" in reached.why
+    assert 0.6 - (0.25 if doubt else 0.002) < reached.fraction <= 0.6
+    assert (len(reached.path) < 4) == bool(doubt)
+
+
+def test_what_went_otherwise_is_in_the_path() -> None:
+    """The first guess turns tets inside out; the path says where, and what was made of it."""
+    with pytest.raises(bz.NotConverged) as failure:
+        bz.solve(body(shift=(0, 0, -1.2)))
+    said = " ".join(event for each in failure.value.path for event in each.events)
+    assert "of the correction refused: J = " in said
+    assert "100 % of the load was tried in vain" in said
+
+
+def test_tangent_that_is_not_positive_is_told() -> None:
+    """A column squeezed beyond where it buckles: straight it stays, its tangent is not."""
+    mesh = bz.block(size=(1.0, 1.0, 12.0), cells=(1, 1, 8))
+    squeezed = bz.Moved("top", translation=(0, 0, -1.2))
+    law = bz.NeoHooke(1.0, 0.3)
+    found = bz.solve(
+        bz.Body(mesh, 2, law, [bz.Fixed("bottom"), squeezed]), solver="multigrid", steps=1
+    )
+    said = [event for each in found.path for event in each.events]
+    assert any("direction without positive energy" in event for event in said)
+    assert found.residual <= 1e-10

@@ -50,6 +50,27 @@ PYTHON = (
         ("tests/laws/test_newton.py", "tests/laws/test_paths.py"),
     ),
     Mutant(
+        "enclosed tissue judged by its small strain at finite strain",
+        f"{EQUATIONS}/enclosed.py",
+        "if law.finite else np.trace",
+        "if not law.finite else np.trace",
+        ("tests/faults/test_nonlinear.py",),
+    ),
+    Mutant(
+        "an acoustic tensor of the stress along the wrong side",
+        f"{MECHANICS}/ellipticity.py",
+        "dH[k] = m",
+        "dH[:, k] = m",
+        ("src/bezsoma/mechanics/ellipticity.py", "src/bezsoma/equations/ellipticity.py"),
+    ),
+    Mutant(
+        "load steps that are halved on where the law has lost its ellipticity",
+        f"{SOLVERS}/load_steps.py",
+        "if last or doubt:",
+        "if last:",
+        ("tests/faults/test_nonlinear.py",),
+    ),
+    Mutant(
         "the secant of the stiffening law without its growth in volume",
         f"{MECHANICS}/stiffening.py",
         "volume = kappa_part[..., None, None] * kappa * trace",

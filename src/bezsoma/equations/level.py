@@ -81,13 +81,19 @@ def refuse_flux(
         whole = float(np.asarray(abs(through).sum(axis=0)).ravel() @ np.abs(of_part))
         if abs(flux) > FLUX * whole:
             inside = pressure_net.mesh.volumes[(mode[pressure_net.of_tet] != 0).all(axis=1)]
-            raise InputError(
-                "nu = 1/2 and the whole boundary has prescribed displacements, which change the "
-                f"volume inside by {flux:.6g} mm3 ({abs(flux) / inside.sum():.2g} of it, "
-                f"{abs(flux) / whole:.2g} of what goes in and out): that cannot be. Leave some of "
-                "the boundary free along its normal, prescribe displacements whose net flux is "
-                "zero, or take nu below 1/2"
+            raise changed_volume(
+                flux, inside.sum(), f", {abs(flux) / whole:.2g} of what goes in and out"
             )
+
+
+def changed_volume(flux: float, inside: float, more: str = "") -> InputError:
+    """What is said of prescribed displacements that change a volume that cannot change, mm3."""
+    return InputError(
+        "nu = 1/2 and the whole boundary has prescribed displacements, which change the volume "
+        f"inside by {flux:.6g} mm3 ({abs(flux) / inside:.2g} of it{more}): that cannot be. Leave "
+        "some of the boundary free along its normal, prescribe displacements whose net flux is "
+        "zero, or take nu below 1/2"
+    )
 
 
 def without_mean(p: Floats, modes: Floats, net: ControlNet) -> Floats:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""GMRES, for the tangents of the mixed form: indefinite, and often not symmetric."""
+"""GMRES, for tangents that are indefinite, and often not symmetric."""
 
 from __future__ import annotations
 
@@ -52,28 +52,25 @@ def _cycle(
 ) -> tuple[Floats, int]:
     """The correction from a Krylov space of at most so many directions, and how many."""
     size = _length(r)
-    basis, forward = [r / size], []
+    basis, forward = np.empty((most + 1, len(r))), np.empty((most, len(r)))
+    basis[0] = r / size
     H, right = np.zeros((most + 1, most)), np.zeros(most + 1)
     right[0] = size
     y: Floats = np.zeros(0)
     for j in range(most):
-        forward.append(precondition(basis[j]))
+        forward[j] = precondition(basis[j])
         w = apply(forward[j])
         for _ in range(2):  # twice is enough for orthogonality to rounding
-            for i, v in enumerate(basis):
-                along = float(np.einsum("i,i->", v, w))
-                H[i, j] += along
-                w -= along * v
+            along = np.einsum("in,n->i", basis[: j + 1], w)
+            H[: j + 1, j] += along
+            w -= np.einsum("i,in->n", along, basis[: j + 1])
         H[j + 1, j] = _length(w)
         small, b = H[: j + 2, : j + 1], right[: j + 2]
         y = np.asarray(np.linalg.lstsq(small, b, rcond=None)[0], dtype=np.float64)
         if H[j + 1, j] <= 1e-14 * size or np.linalg.norm(b - small @ y) <= target:
             break
-        basis.append(w / H[j + 1, j])
-    dx = np.zeros_like(r)
-    for factor, z in zip(y, forward, strict=True):
-        dx += factor * z
-    return dx, len(forward)
+        basis[j + 1] = w / H[j + 1, j]
+    return np.einsum("i,in->n", y, forward[: len(y)]), len(y)
 
 
 def _length(x: Floats) -> float:

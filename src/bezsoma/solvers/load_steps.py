@@ -4,17 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError
-from bezsoma.solvers.newton import Iteration, Rule, StepFailed, System, equilibrium
+from bezsoma.solvers.newton import Iteration, Rule, StepFailed, System, TangentFailed, equilibrium
 
 SHORTEST = 2.0**-10
 """A load step of less than a thousandth of the load is given up."""
+DOUBTED = 2.0**-3
+"""A step shorter than this is given up if the law has lost its ellipticity and the tangent no
+longer gives a correction."""
 FEW = 6
 """A step that took no more iterations than this lets the next one be twice as long."""
 
@@ -76,11 +79,15 @@ def loaded(
     """The state under the whole load, from x (n,) at rest, or the last that could be reached.
 
     Given steps are taken as they are. Without them the whole load is tried first; a step that
-    fails is halved, and one that took few iterations lets the next be twice as long.
+    fails is halved, and one that took few iterations lets the next be twice as long. Halving ends
+    early where the law has lost its ellipticity and its tangent fails: there it leads nowhere.
     """
     path: list[Iteration] = []
+    failed: list[str] = []
 
     def record(iteration: Iteration) -> None:
+        if failed:
+            iteration = replace(iteration, events=(failed.pop(), *iteration.events))
         path.append(iteration)
         tell(iteration)
 
@@ -92,8 +99,13 @@ def loaded(
             x = equilibrium(system, x, target, number, rule, record)
         except StepFailed as failure:
             length /= 2
-            if steps is not None or length < SHORTEST:
-                return Reached(x, fraction, tuple(path), target, str(failure))
+            failed[:] = [f"{100 * target:.4g} % of the load was tried in vain: {failure}"]
+            last = steps is not None or length < SHORTEST
+            tired = length < DOUBTED and isinstance(failure, TangentFailed)
+            doubt = system.doubt(x) if last or tired else ""
+            if last or doubt:
+                why = f"{failure}; {doubt}" if doubt else str(failure)
+                return Reached(x, fraction, tuple(path), target, why)
         else:
             fraction = target
             number += 1

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -44,6 +44,10 @@ class StepFailed(BezSomaError):
     """Equilibrium was not found at a fraction of the load: the message says why."""
 
 
+class TangentFailed(StepFailed):
+    """It was not, because no correction could be found."""
+
+
 @dataclass(frozen=True, eq=False)
 class Balance:
     """Applied minus internal forces r (n,), and what they are measured by.
@@ -58,6 +62,14 @@ class Balance:
     work: float
 
 
+class Correction(NamedTuple):
+    """The free dx (n,) of a linear solve, its iterations, and what was out of the ordinary."""
+
+    dx: Floats
+    linear: int
+    event: str = ""
+
+
 class Linearised(Protocol):
     """The tangent at a state."""
 
@@ -65,8 +77,8 @@ class Linearised(Protocol):
         """K dx (n,)."""
         ...
 
-    def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
-        """Free dx (n,) with |b - K dx| <= rtol |b|, and the iterations; raises Breakdown."""
+    def solve(self, b: Floats, rtol: float) -> Correction:
+        """Free dx (n,) with |b - K dx| <= rtol |b|; raises Breakdown."""
         ...
 
 
@@ -84,6 +96,8 @@ class System:
     given: Callable[[float], Floats]
     balance: Callable[[Floats, float], Balance]
     tangent: Callable[[Floats, float], Linearised]
+    doubt: Callable[[Floats], str] = lambda x: ""
+    """What the material has lost at x, and where; nothing where it is sound."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +106,9 @@ class Iteration:
 
     `residual` is max over u and p of |R - F| / max(|F|, |R|) after it, over the free components;
     `energy` |(R - F) . dx| relative to the work of the forces; `factor` the part of the correction
-    that was taken; `linear` how many iterations the linear solve took (1: direct).
+    that was taken; `linear` how many iterations the linear solve took (1: direct). `events` are
+    what went otherwise than it should: a longer step of the load that failed, states that a law
+    could not bear, a tangent that is not positive.
     """
 
     step: int
@@ -101,6 +117,7 @@ class Iteration:
     energy: float
     factor: float
     linear: int
+    events: tuple[str, ...] = ()
 
 
 @dataclass
@@ -173,6 +190,12 @@ class _Step:
     floor: tuple[float, ...] = ()
     refused: str = ""
     """Why the last state that could not be was refused."""
+    events: list[str] = field(default_factory=list)
+
+    def told(self) -> tuple[str, ...]:
+        """What happened since it was last told."""
+        told, self.events = tuple(self.events), []
+        return told
 
     def free(self, r: Floats) -> Floats:
         return np.where(self.system.held, 0.0, r)
@@ -239,10 +262,11 @@ def equilibrium(
         eta = FIRST if moving else _forcing(step, b, balance, before)
         before = step.merit(b)
         try:
-            dx, linear = tangent.solve(b, eta)
+            dx, linear, event = tangent.solve(b, eta)
         except Breakdown as failure:
-            raise StepFailed(str(failure)) from failure
+            raise TangentFailed(str(failure)) from failure
         dx += jump
+        step.events += [event] if event else []
         try:
             factor, x, balance = _searched(step, x, dx, b, moving, watchdog.free)
         except StepFailed:
@@ -251,7 +275,8 @@ def equilibrium(
             x, balance = watchdog.back()
             continue
         energy = _energy(step, balance, dx)
-        record(Iteration(number, fraction, step.relative(balance), energy, factor, linear))
+        size, events = step.relative(balance), step.told()
+        record(Iteration(number, fraction, size, energy, factor, linear, events))
         if not moving:
             x, balance = watchdog.seen(factor, x, balance, step.merit(balance.r))
     raise StepFailed(
@@ -301,6 +326,7 @@ def _searched(
             balance = step.system.balance(there, step.fraction)
         except Inadmissible as failure:
             why = step.refused = str(failure)
+            step.events.append(f"{100 * factor:.3g} % of the correction refused: {failure}")
         else:
             size = step.merit(balance.r)
             allowed = 1.0 if moving else GROWTH if free else 1 - SUFFICIENT * factor

@@ -12,6 +12,7 @@ from scipy.sparse.linalg import splu
 
 from bezsoma import bernstein
 from bezsoma.arrays import Bools, Floats, frozen
+from bezsoma.equations.enclosed import refuse_changed_volume
 from bezsoma.equations.internal import core_law
 from bezsoma.equations.level import undetermined, without_mean
 from bezsoma.equations.locked import refuse_undetermined
@@ -27,7 +28,7 @@ from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.torn import pressure_net
 from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.multigrid import preconditioner
-from bezsoma.solvers.newton import Balance, Breakdown, Linearised, System, extent
+from bezsoma.solvers.newton import Balance, Breakdown, Correction, Linearised, System, extent
 from bezsoma.solvers.tangents import Factored
 
 MOST_PRODUCTS = 600
@@ -108,6 +109,7 @@ def mixed_problem(
     soft = soft[body.mesh.region]
     refuse_undetermined(net, pressures, equations.held, soft)
     modes = undetermined(net, pressures, equations.held, soft)
+    refuse_changed_volume(net, pressures, modes, laws, equations.known.values)
     stiffness = frozen(np.array([shear_at_rest(law) for law in laws]))
     internal = MixedPointwise(net, pressures, laws, exactness)
     fast = _fast(internal, body, threads)
@@ -188,7 +190,7 @@ class AppliedMixed:
             f = f - self.follow @ dx[: self.problem.split]
         return np.concatenate([f, g])
 
-    def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
+    def solve(self, b: Floats, rtol: float) -> Correction:
         """The free dx (n,), by GMRES."""
         held, weight, split = self.problem.held, self.problem.weight, self.problem.split
         scale = np.concatenate([np.ones(split), np.full(len(b) - split, weight)])
@@ -207,7 +209,7 @@ class AppliedMixed:
             y, count = minimal_residual(apply, precondition, scale * b, rtol, MOST_PRODUCTS)
         except NotConverged as failure:
             raise Breakdown(str(failure)) from failure
-        return scale * y, count
+        return Correction(scale * y, count)
 
 
 def applied(problem: MixedProblem, threads: int) -> Callable[[Floats, float], Linearised]:

@@ -17,8 +17,9 @@ from bezsoma.equations.pointwise import Pointwise, Tangent
 from bezsoma.equations.tangent_matrix import tangent_matrix
 from bezsoma.errors import NotConverged
 from bezsoma.solvers.bicgstab import stabilised
+from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.krylov import conjugate_gradients
-from bezsoma.solvers.newton import Breakdown, Linearised
+from bezsoma.solvers.newton import Breakdown, Correction, Linearised
 
 MOST_ITERATIONS = 800
 
@@ -38,7 +39,7 @@ class Factored:
         """K dx (n,)."""
         return np.asarray(self.matrix @ dx)
 
-    def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
+    def solve(self, b: Floats, rtol: float) -> Correction:
         """The free dx (n,) with K dx = b, refined once; `rtol` is met whatever it is."""
         scale = np.ones(len(b)) if self.scale is None else self.scale
         S = diags_array(scale[self.free])
@@ -56,7 +57,7 @@ class Factored:
         dx[self.free] += factors.solve(right - part @ dx[self.free])
         if not np.isfinite(dx).all():
             raise Breakdown("the tangent is singular to rounding")
-        return scale * dx, 1
+        return Correction(scale * dx, 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,28 +77,41 @@ class Applied:
             out -= self.follow @ dx
         return out
 
-    def solve(self, b: Floats, rtol: float) -> tuple[Floats, int]:
-        """The free dx (n,), by conjugate gradients where that can be, else by BiCGStab."""
+    def solve(self, b: Floats, rtol: float) -> Correction:
+        """The free dx (n,), by conjugate gradients or, not symmetric, by BiCGStab.
+
+        GMRES takes over where a symmetric tangent is not positive, as beyond buckling: BiCGStab
+        stands still there.
+        """
         size = float(np.abs(b).max())
         if size == 0:
-            return np.zeros_like(b), 0
+            return Correction(np.zeros_like(b), 0)
         scaled = (b / size).reshape(-1, 3)
         try:
-            x, count = self._solved(scaled, rtol)
+            x, count, event = self._solved(scaled, rtol)
         except NotConverged as failure:
             raise Breakdown(str(failure)) from failure
-        return x.ravel() * size, count
+        return Correction(x.ravel() * size, count, event)
 
-    def _solved(self, b: Floats, rtol: float) -> tuple[Floats, int]:
-        if self.symmetric:
-            try:
-                x, history = conjugate_gradients(
-                    self._free_product, self.precondition, b, rtol, MOST_ITERATIONS
-                )
-                return x, len(history) - 1
-            except NotConverged:
-                pass  # not positive here: what follows needs no positive tangent
-        return stabilised(self._free_product, self.precondition, b, rtol, MOST_ITERATIONS)
+    def _solved(self, b: Floats, rtol: float) -> Correction:
+        if not self.symmetric:
+            x, count = stabilised(self._free_product, self.precondition, b, rtol, MOST_ITERATIONS)
+            return Correction(x, count)
+        try:
+            x, history = conjugate_gradients(
+                self._free_product, self.precondition, b, rtol, MOST_ITERATIONS
+            )
+            return Correction(x, len(history) - 1)
+        except NotConverged as failure:
+            event = f"GMRES solved where conjugate gradients did not: {failure}"
+        flat, count = minimal_residual(
+            lambda v: self._free_product(v.reshape(-1, 3)).ravel(),
+            lambda r: self.precondition(r.reshape(-1, 3)).ravel(),
+            b.ravel(),
+            rtol,
+            MOST_ITERATIONS,
+        )
+        return Correction(flat.reshape(-1, 3), count, event)
 
     def _free_product(self, x: Floats) -> Floats:
         out = self.product(x.ravel()).reshape(-1, 3)

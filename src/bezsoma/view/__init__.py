@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
+from bezsoma.view.history import history_picture
 from bezsoma.view.picture import face_picture, picture
 from bezsoma.view.vtk import write_surface_vtu, write_vtu
 
-__all__ = ["face_picture", "picture", "write_surface_vtu", "write_vtu"]
+__all__ = ["face_picture", "history_picture", "picture", "write_surface_vtu", "write_vtu"]

@@ -33,6 +33,8 @@ from bezsoma.view.layout import Layout
 INK, PALE = "#22262b", "#7a828c"
 NOTICE = "Research software, not a medical device."
 _DPI = 100
+_BESIDE = 8
+"""So many names of bands have room beside each other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,16 +126,73 @@ def sheet(panels: Sequence[Panel], layout: Layout, title: str = "") -> Figure:
         figure.text(
             0.5, y, title, size=25 * points, color=INK, weight="bold", ha="center", va="center"
         )
-    note = f"bezsoma {__version__}.  {NOTICE}"
+    _note(figure, width, height, layout.unit)
+    return figure
+
+
+def _note(figure: Figure, width: int, height: int, unit: float) -> None:
+    """What drew the page, in its lower right."""
     figure.text(
-        1 - 20 * layout.unit / width,
-        16 * layout.unit / height,
-        note,
-        size=13 * points,
+        1 - 20 * unit / width,
+        16 * unit / height,
+        f"bezsoma {__version__}.  {NOTICE}",
+        size=13 * unit * 72 / _DPI,
         color=PALE,
         ha="right",
         va="center",
     )
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Positive numbers (n,) one after the other; gaps where they are zero."""
+
+    label: str
+    values: Floats
+    colour: str
+    dashed: bool = False
+
+
+def chart(
+    curves: Sequence[Curve],
+    bands: Sequence[tuple[float, float, str]],
+    across: str,
+    title: str,
+    size: tuple[int, int],
+) -> Figure:
+    """A page with curves over their numbers 1, 2, ..., logarithmic; bands are named from x to x."""
+    width, height = size
+    unit = width / 800
+    points = unit * 72 / _DPI
+    figure = Figure(figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white")
+    FigureCanvasAgg(figure)
+    axes = _axes(figure, 90 * unit, 84 * unit, width - 120 * unit, height - 178 * unit)
+    whole = max([1, *(len(curve.values) for curve in curves)])
+    rotation = 90 if len(bands) > _BESIDE else 0
+    for number, (start, end, name) in enumerate(bands):
+        axes.axvspan(start, end, color="#eef0f2" if number % 2 else "white", zorder=0)
+        if rotation and end - start < 0.02 * whole:
+            continue  # a name would run into the next
+        middle, top = (start + end) / 2, axes.get_xaxis_transform()
+        look: dict[str, Any] = {
+            "size": 11 * points,
+            "color": PALE,
+            "ha": "center",
+            "rotation": rotation,
+        }
+        axes.text(middle, 1.01, name, transform=top, **look)
+    for curve in curves:
+        x = np.arange(1, len(curve.values) + 1)
+        shown = np.where(curve.values > 0, curve.values, np.nan)
+        style = "--" if curve.dashed else "-"
+        axes.plot(x, shown, style, marker="o", ms=5 * points, color=curve.colour, label=curve.label)
+    axes.set(yscale="log", xlim=(0.5, whole + 0.5))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlabel(across, size=15 * points, color=INK)
+    axes.tick_params(labelsize=14 * points, color=INK, labelcolor=INK)
+    axes.legend(fontsize=14 * points, frameon=False, labelcolor=INK)
+    figure.suptitle(title, size=19 * points, color=INK)
+    _note(figure, width, height, unit)
     return figure
 
 

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether a strained material resists every shear and stretch of a thin layer in it.
+
+Where it does not, strain may gather in a layer as thin as the mesh allows: answers depend on the
+mesh, tangents turn singular, and Newton's iteration goes astray.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from bezsoma.arrays import Floats, frozen
+from bezsoma.mechanics.laws import Law
+
+LAYERS = 61
+"""Normals of layers that are tried, over half a sphere: none is further than 12 degrees off."""
+
+
+@cache
+def layers() -> Floats:
+    """The normals (LAYERS, 3): Fibonacci's spiral over the half sphere z >= 0."""
+    k = np.arange(LAYERS) + 0.5
+    z, turn = k / LAYERS, np.pi * (1 + np.sqrt(5)) * k
+    ring = np.sqrt(1 - z * z)
+    return frozen(np.stack([ring * np.cos(turn), ring * np.sin(turn), z], axis=1))
+
+
+def least_resistance(law: Law, H: Floats) -> Floats:
+    """The least of a . Q(m) a (..., ) MPa over unit a and the normals m of `layers`.
+
+    Q_ik(m) = dP_ij/dH_kl m_j m_l is the acoustic tensor; its symmetric part is positive for all m
+    where the law is strongly elliptic (R. W. Ogden, Non-linear elastic deformations, 1984, 6.2.7).
+    At rest a linear law has min(mu, lambda + 2 mu) = mu:
+
+    >>> from bezsoma.mechanics.stiffening import Stiffening
+    >>> law = Stiffening(E=1.0, nu=0.45, A=5.0)
+    >>> H = np.zeros((3, 3, 3))
+    >>> bool(abs(least_resistance(law, H) - 0.5 / 1.45).max() < 1e-14)
+    True
+
+    Neo-Hooke's Q = mu I + (mu + lambda - lambda ln J) n n^T, n = F^-T m, resists by mu throughout:
+
+    >>> from bezsoma.mechanics.hyperelastic import NeoHooke
+    >>> sheared = np.array([[0.3, 0.5, 0.0], [-0.2, 0.1, 0.4], [0.0, 0.3, -0.2]])
+    >>> bool(abs(least_resistance(NeoHooke(E=1.0, nu=0.25), sheared[None]) - 0.4).max() < 1e-13)
+    True
+
+    The paper's law loses it by volume strain, at nu = 0.45 and A = 5 never below 0.33:
+
+    >>> H[:] = np.diag([1.0, 1.0, 1.0]) * np.array([0.1, 0.25, -0.25])[:, None, None]
+    >>> (least_resistance(law, H) > 0).tolist()
+    [True, True, True]
+    """
+    least = np.full(H.shape[:-2], np.inf)
+    for m in layers():
+        Q = np.empty(H.shape)
+        for k in range(3):
+            dH = np.zeros((3, 3))
+            dH[k] = m
+            Q[..., :, k] = law.derivative(H, np.broadcast_to(dH, H.shape)) @ m
+        both = Q + np.swapaxes(Q, -1, -2)
+        least = np.minimum(least, np.linalg.eigvalsh(both)[..., 0] / 2)
+    return least
