@@ -73,11 +73,11 @@ def solve(
     Args:
         body: what is to be solved.
         solver: "direct" (a sparse factorisation, to rounding; Ctrl-C waits for its end, so beware
-            of more than some 10 000 unknowns), "multigrid" (conjugate gradients
-            without a matrix, preconditioned by blocks of entities and multigrid), "cg" (the
-            paper's: with an incomplete Cholesky factorisation), or "auto": direct up to
-            `DIRECT_UP_TO` unknowns, multigrid above. With a pressure: "direct", "saddle" (without
-            a matrix, preconditioned), or "auto".
+            of more than some 10 000 unknowns), "multigrid" (conjugate gradients without a matrix,
+            preconditioned by blocks of entities and multigrid), "cg" (the paper's: with an
+            incomplete Cholesky factorisation), or "auto": direct up to `DIRECT_UP_TO` unknowns,
+            multigrid above. With a pressure: "direct", "saddle" (without a matrix,
+            preconditioned), or "auto".
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
             for others relative to the larger of internal and applied forces, the work of the
