@@ -26,6 +26,7 @@ from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
+from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.multigrid import preconditioner
 from bezsoma.solvers.newton import Balance, Iteration, Rule, System, extent
 from bezsoma.solvers.nonlinear_mixed import applied, factored, level, mixed_problem
@@ -81,6 +82,7 @@ def nonlinear_solution(
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
     chosen = _choice(int(known.mask.size - known.mask.sum()), solver)
+    refuse_what_does_not_fit(net, chosen)
     with watch.stage("equations", f"{len(body.loads)} loads, {chosen}"):
         equations = nonlinear_equations(body, net, known)
         form = (_mixed if body.mixed else _plain)(
