@@ -14,7 +14,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -42,7 +41,8 @@ namespace nb = nanobind;
 namespace {
 
 using bezsoma::handed_over, bezsoma::In, bezsoma::Out, bezsoma::require, bezsoma::Vectors,
-    bezsoma::Walk, bezsoma::listen_to_signals, bezsoma::numbered_by_walk, bezsoma::Scalars;
+    bezsoma::Walk, bezsoma::listen_to_signals, bezsoma::numbered_by_walk, bezsoma::Scalars,
+    bezsoma::Turn;
 
 /// gradients, volumes, lambda and mu of the same tets.
 struct Tets {
@@ -236,20 +236,12 @@ auto first_controls(In<std::int64_t, -1> order, TetCorners tets,
 
 // ------------------------------------------------------------------ without a matrix
 
-/// Threads of Python take turns: an operator has one team and one scratch space. Wait for a turn
-/// without the interpreter, which whoever has it may need. Who is told of an iteration has the turn
-/// and may use the operator too: nothing of it is in use between two jobs.
-using Turn = std::lock_guard<std::recursive_mutex>;
-
 /// K of one body without a matrix in one precision, its threads, and the kernels of one
 /// instruction set. What it was made from is not kept.
 class MatrixFree {
 public:
     MatrixFree(const Walk &walk, std::size_t threads, const std::string &instructions, bool single)
-        : team_(threads),
-          kernels_(instructions.empty() ? &bezsoma::best_kernels()
-                                        : bezsoma::kernels_named(instructions.c_str())) {
-        require(kernels_ != nullptr, "this processor or build lacks that instruction set");
+        : team_(threads), kernels_(&bezsoma::kernels_of(instructions)) {
         const bezsoma::ElasticTets tets = walk.tets();
         team_.watch(listen_to_signals);
         nb::gil_scoped_release released;
@@ -308,10 +300,7 @@ class MixedFree {
 public:
     MixedFree(const Walk &walk, int pressure_degree, In<std::int32_t, -1, -1> first,
               std::size_t threads, const std::string &instructions)
-        : team_(threads),
-          kernels_(instructions.empty() ? &bezsoma::best_kernels()
-                                        : bezsoma::kernels_named(instructions.c_str())) {
-        require(kernels_ != nullptr, "this processor or build lacks that instruction set");
+        : team_(threads), kernels_(&bezsoma::kernels_of(instructions)) {
         const bezsoma::ElasticTets tets = walk.tets();
         require(tets.degree <= bezsoma::highest_mixed_degree && pressure_degree >= 1 &&
                     pressure_degree < tets.degree,
@@ -331,14 +320,14 @@ public:
     void apply(In<double, -1, 3> u, In<double, -1> p, Vectors f, Scalars g) {
         require(fits(u, p) && fits(f, g), "u, f and p, g must have one row a control");
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         operator_->apply(u.data(), p.data(), f.data(), g.data());
     }
 
     double work(In<double, -1, 3> u, In<double, -1> p) {
         require(fits(u, p), "u and p must have one row a control");
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         return operator_->work(u.data(), p.data());
     }
 
@@ -349,13 +338,13 @@ public:
                 "weight, p and g must fit the regions and the pressure's controls");
         const std::vector<double> weights(weight.data(), weight.data() + weight.size());
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         operator_->on_pressure(&bezsoma::PressureKernel::mass, weights, p.data(), g.data());
     }
 
     bezsoma::MixedOperator &form() { return *operator_; }
     bezsoma::Team &team() { return team_; }
-    std::mutex &turn() { return turn_; }
+    std::recursive_mutex &turn() { return turn_; }
     const bezsoma::Kernels &kernels() const { return *kernels_; }
 
     template <class U, class P> bool fits(const U &u, const P &p) const {
@@ -364,7 +353,7 @@ public:
     }
 
 private:
-    std::mutex turn_;
+    std::recursive_mutex turn_;
     bezsoma::Team team_;
     const bezsoma::Kernels *kernels_;
     std::unique_ptr<bezsoma::MixedOperator> operator_;
@@ -464,7 +453,7 @@ public:
         const std::vector<double> weights(weight.data(), weight.data() + weight.size());
         const std::vector<double> out(levels.data(), levels.data() + levels.size());
         nb::gil_scoped_release released;
-        const std::lock_guard turn(form_.turn());
+        const Turn turn(form_.turn());
         blocks_ = std::make_unique<bezsoma::Preconditioner>(tets, corners.data(), vertices,
                                                             held_.data(), form.form().chunks(),
                                                             form.kernels(), form.team());
@@ -482,7 +471,7 @@ public:
         bezsoma::Convergence found;
         {
             nb::gil_scoped_release released;
-            const std::lock_guard turn(form_.turn());
+            const Turn turn(form_.turn());
             bezsoma::Search search{blocks_.get(),
                                    [&](const float *r, float *z) { aggregation_->apply(r, z); },
                                    form_.team()};

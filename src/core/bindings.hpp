@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,6 +40,20 @@ Out<T, shape...> handed_over(std::vector<T> &&values, std::initializer_list<std:
 inline void require(bool holds, const char *what) {
     if (!holds)
         throw nb::value_error(what);
+}
+
+/// Whether each run of controls begins where the walk first touches it.
+inline bool numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
+    std::int32_t next = 0;
+    const std::size_t per_tet = first.shape(1);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        const std::int32_t run = first.data()[i];
+        if (run < 0 || run > next)
+            return false;
+        if (run == next)
+            next += controls_inside(degree, static_cast<int>(i % per_tet));
+    }
+    return true;
 }
 
 /// Tets in the order of the walk that numbered their controls.
@@ -73,6 +89,8 @@ struct Walk {
         require(within(order, tets) && within(corners, points.shape(0)) &&
                     within(region, lame.shape(0)),
                 "order, corners and region must number tets, points and rows of lame");
+        require(numbered_by_walk(degree, first),
+                "controls must be numbered as the walk over the tets first touches them");
         return {degree,
                 static_cast<std::int64_t>(tets),
                 first.data(),
@@ -85,25 +103,17 @@ struct Walk {
     }
 };
 
+/// Threads of Python take turns: an operator has one team and one scratch space. Wait for a turn
+/// without the interpreter, which whoever has it may need. Who is told of an iteration has the turn
+/// and may use the operator too: nothing of it is in use between two jobs. A signal's handler is
+/// called in the midst of one; it has the turn as well, and the team refuses it.
+using Turn = std::lock_guard<std::recursive_mutex>;
+
 /// Lets Python's signal handlers run: Ctrl-C in the middle of a computation.
 inline void listen_to_signals() {
     nb::gil_scoped_acquire held;
     if (PyErr_CheckSignals() != 0)
         throw nb::python_error();
-}
-
-/// Whether each run of controls begins where the walk first touches it.
-inline bool numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
-    std::int32_t next = 0;
-    const std::size_t per_tet = first.shape(1);
-    for (std::size_t i = 0; i < first.size(); ++i) {
-        const std::int32_t run = first.data()[i];
-        if (run < 0 || run > next)
-            return false;
-        if (run == next)
-            next += controls_inside(degree, static_cast<int>(i % per_tet));
-    }
-    return true;
 }
 
 /// The widest instruction set for an empty name.

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -164,7 +163,7 @@ public:
     void forces(In<double, -1, 3> u, Vectors f) {
         fits(u.shape(0), f.shape(0), false);
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         laws().forces({u.data(), nullptr}, {f.data(), nullptr});
     }
 
@@ -172,7 +171,7 @@ public:
         fits(u.shape(0), df.shape(0), false);
         fits(du.shape(0), df.shape(0), false);
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         laws().tangent({u.data(), nullptr}, {du.data(), nullptr}, {df.data(), nullptr});
     }
 
@@ -183,7 +182,7 @@ public:
         require(u.shape(0) == rows && du.shape(0) == rows && df.shape(0) == rows,
                 "displacements and forces must have one row a control");
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         single_->tangent({u.data(), nullptr}, {du.data(), nullptr}, {df.data(), nullptr});
     }
 
@@ -191,7 +190,7 @@ public:
         fits(u.shape(0), u.shape(0), false);
         require_energy();
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         return laws().energy({u.data(), nullptr});
     }
 
@@ -199,7 +198,7 @@ public:
         fits(u.shape(0), f.shape(0), true);
         fits_pressure(p.shape(0), g.shape(0));
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         laws().forces({u.data(), p.data()}, {f.data(), g.data()});
     }
 
@@ -210,7 +209,7 @@ public:
         fits_pressure(p.shape(0), dg.shape(0));
         fits_pressure(dp.shape(0), dg.shape(0));
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         laws().tangent({u.data(), p.data()}, {du.data(), dp.data()}, {df.data(), dg.data()});
     }
 
@@ -219,7 +218,7 @@ public:
         fits_pressure(p.shape(0), p.shape(0));
         require_energy();
         nb::gil_scoped_release released;
-        const std::lock_guard turn(turn_);
+        const Turn turn(turn_);
         return laws().energy({u.data(), p.data()});
     }
 
@@ -272,7 +271,7 @@ private:
         return nb::make_tuple(value, x.place, x.point);
     }
 
-    std::mutex turn_;
+    std::recursive_mutex turn_;
     Team team_;
     const Kernels &kernels_;
     std::unique_ptr<PointwiseOperator<double>> double_;

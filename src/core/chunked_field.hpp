@@ -12,7 +12,8 @@ namespace bezsoma {
 
 /// How a field of any degree and number of components travels between the vectors of a mesh and
 /// the chunks that threads work on: read into scratch, written back in two steps, so that no two
-/// threads add to one number and sums keep their order.
+/// threads add to one number and sums keep their order. (ElasticOperator does without the copies
+/// of own controls, which are most of what it would move: it works on the vectors in place.)
 template <class T> class ChunkedField {
 public:
     /// Numbers that a kernel may read past the end of a chunk's controls.

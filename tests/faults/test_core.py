@@ -13,13 +13,16 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
-from bezsoma.arrays import Floats
+from bezsoma import _core
+from bezsoma.arrays import Floats, Int32s
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.displacement import Equations
 from bezsoma.equations.element import lame_constants
-from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.matrix_free import MatrixFree, walk
+from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.mesh import ControlNet, block
 from bezsoma.solvers.multigrid import multigrid
+from bezsoma.solvers.saddle import saddle
 from processes import prelude
 
 BODY = """
@@ -196,3 +199,30 @@ def test_an_error_of_a_report_leaves_the_operator_free() -> None:
     with pytest.raises(KeyError):
         bz.solve(body, solver="multigrid", progress=fails)
     assert bz.solve(body, solver="multigrid").residual <= 1e-8
+
+
+def test_a_report_may_use_the_mixed_operator_it_is_told_of() -> None:
+    """As with `MatrixFree`; a lock taken twice would wait for ever."""
+    net, pressures = (ControlNet(block(cells=3), degree) for degree in (2, 1))
+    form = MixedFree(net, pressures, np.array([[0.4, 0.2]]), 2)
+    held = np.zeros((net.count, 3), dtype=bool)
+    held[net.of_place("bottom")] = True
+    f, g = np.where(held, 0.0, np.sin(7 * net.points)), np.zeros(pressures.count)
+    expected, seen = form.apply(f, g)[0], list[bool]()
+
+    def told(iteration: int, residual: float) -> None:
+        seen.append(bool((form.apply(f, g)[0] == expected).all()))
+
+    levels = np.zeros((0, pressures.count))
+    quiet = saddle(form, held, f, g, levels, 1e-8, lambda iteration, residual: None)
+    assert np.array_equal(quiet[0], saddle(form, held, f, g, levels, 1e-8, told)[0])
+    assert len(seen) > 5 and all(seen)
+
+
+@pytest.mark.parametrize("change", [lambda first: first - 5, lambda first: first[::-1]])
+def test_controls_that_no_walk_numbered_so_are_refused(change: Callable[[Int32s], Int32s]) -> None:
+    """Chunks own what they meet first: other numbers would be written where nobody looks."""
+    net = ControlNet(block(cells=2), 3)
+    numbers = np.ascontiguousarray(change(net.walked()))
+    with pytest.raises(ValueError, match="as the walk over the tets first touches them"):
+        _core.MatrixFree(walk(net, np.array([[0.6, 0.4]]), numbers))

@@ -6,12 +6,13 @@ from __future__ import annotations
 import subprocess
 import sys
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from bezsoma.errors import InputError
-from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved
+from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, NeoHooke
 from bezsoma.mesh import ControlNet, block
 from bezsoma.solvers import memory, solve
 from processes import prelude
@@ -110,6 +111,20 @@ def test_what_does_not_fit_is_refused_before_it_is_taken(
     assert taken < 600 * 3 * net.count, (
         "numbering and supports, and nothing of the size of a matrix"
     )
+
+
+def test_bodies_with_a_pressure_or_other_laws_are_refused_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    linear = held(3, 4)
+    mixed = replace(linear, pressure_degree=2)
+    finite = replace(linear, materials=NeoHooke(E=1.0, nu=0.3))
+    monkeypatch.setattr(memory, "available", lambda: 500_000)
+    for body, solver, other in [(mixed, "direct", "saddle"), (finite, "direct", "multigrid")]:
+        with pytest.raises(InputError, match=f"are free; .* or solver='{other}'"):
+            solve(body, solver=solver)
+        with pytest.raises(InputError, match=f"by '{other}' take about"):
+            solve(body, solver=other)
 
 
 def test_what_fits_just_so_is_not_refused(monkeypatch: pytest.MonkeyPatch) -> None:

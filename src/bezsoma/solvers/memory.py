@@ -51,15 +51,19 @@ def available() -> int | None:
     return min(known) if known else None
 
 
-def refuse_what_does_not_fit(net: ControlNet, solver: str) -> None:
-    """Raise an InputError if a solver would need more memory than there is."""
-    needed, there = estimate(net, solver), available()
+def refuse_what_does_not_fit(net: ControlNet, solver: str, without: str = "multigrid") -> None:
+    """Raise an InputError if a solver would need more memory than there is.
+
+    `without` names the one that needs no matrix. What laws that are not linear and a pressure take
+    on top is not counted: a fraction of the rest.
+    """
+    needed, there = estimate(net, "multigrid" if solver == without else solver), available()
     if there is not None and needed > there:
         raise InputError(
             f"{3 * net.count} unknowns of degree {net.degree} by {solver!r} take about "
             f"{needed / 2**30:.1f} GiB, and {there / 2**30:.1f} GiB are free; take a lower degree "
             "or a coarser mesh"
-            + ("" if solver == "multigrid" else ", or solver='multigrid', which needs no matrix")
+            + ("" if solver == without else f", or solver={without!r}, which needs no matrix")
         )
 
 

@@ -99,7 +99,7 @@ def _equations(
         refuse_flux(net, pressures, modes, soft, known.values)
     free = int(known.mask.size - known.mask.sum()) + pressures.count
     chosen, why = mixed_choice(free, solver)
-    refuse_what_does_not_fit(net, "direct" if chosen == "direct" else "multigrid")
+    refuse_what_does_not_fit(net, chosen, without="saddle")
     with watch.stage("loads", f"{len(body.loads)} given"):
         loads = forces(body, net)
     with watch.stage("stiffness", f"{free} unknowns"):

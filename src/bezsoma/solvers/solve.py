@@ -72,11 +72,12 @@ def solve(
 
     Args:
         body: what is to be solved.
-        solver: "direct" (a sparse factorisation, to rounding), "multigrid" (conjugate gradients
-            without a matrix, preconditioned by blocks of entities and multigrid), "cg" (the
-            paper's: with an incomplete Cholesky factorisation), or "auto": direct up to
-            `DIRECT_UP_TO` unknowns, multigrid above. With a pressure: "direct", "saddle" (without
-            a matrix, preconditioned), or "auto".
+        solver: "direct" (a sparse factorisation, to rounding; Ctrl-C waits for its end, so beware
+            of more than some 10 000 unknowns), "multigrid" (conjugate gradients without a matrix,
+            preconditioned by blocks of entities and multigrid), "cg" (the paper's: with an
+            incomplete Cholesky factorisation), or "auto": direct up to `DIRECT_UP_TO` unknowns,
+            multigrid above. With a pressure: "direct", "saddle" (without a matrix,
+            preconditioned), or "auto".
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
             for others relative to the larger of internal and applied forces, the work of the
@@ -143,7 +144,7 @@ def _threads(asked: int | None) -> int:
         number = int(given)
     except (TypeError, ValueError):
         number = -1
-    if isinstance(given, bool | float) or not 0 <= number <= MOST_THREADS:
+    if isinstance(asked, bool | float | str) or not 0 <= number <= MOST_THREADS:
         where = "BEZSOMA_THREADS" if asked is None else "threads"
         raise InputError(
             f"{where} = {given!r} is no number of threads: give 1 to {MOST_THREADS}, or 0 for all "
