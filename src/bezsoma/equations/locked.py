@@ -95,8 +95,8 @@ def _groups(
         return
     shares = np.bincount(pressures.of_tet.ravel(), minlength=pressures.count)
     mine = np.bincount(pressures.of_tet[tets].ravel(), minlength=pressures.count)
-    own: Bools = np.asarray(mine == shares)
-    free = ~held.all(axis=1)
+    own = mine == shares
+    free: Bools = np.asarray(~held.all(axis=1))
     links = np.concatenate([free[net.of_tet[tets]], own[pressures.of_tet[tets]]], axis=1)
     ends = np.concatenate([net.of_tet[tets], net.count + pressures.of_tet[tets]], axis=1)
     rows, columns = links.nonzero()
