@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::size_t padding = 16;
 constexpr int most_beginnings = 20;
+// BiCGStab's residuals leap, also where it converges. This far above the least one so far it begins
+// anew from where that was; where nothing was gained since the last beginning, the square as far.
+constexpr double first_leap = 1e4, last_leap = 1e16;
 // Where the inverses of tets, averaged, have their largest eigenvalue times the mass matrix; the
 // least is one. By degree of the pressure - 1, measured on irregular meshes and rounded up.
 constexpr double largest[] = {2.0, 5.0, 8.0, 9.5, 10.5, 11.5, 12.5};
@@ -92,7 +95,7 @@ public:
           team_(team), forces_(3 * size(form.controls())), all_(forces_ + size(form.pressures())),
           of_forces_(forces_, team), of_volumes_(all_ - forces_, team),
           weight_(problem.volume_weight * problem.volume_weight), x(all_ + padding), r(x), start(x),
-          direction(x), v(x), t(x), z(x), loaded(x) {}
+          direction(x), v(x), t(x), z(x), loaded(x), best(x) {}
 
     template <class Term> double sum(const Term &term) {
         return of_forces_.sum(term) +
@@ -164,7 +167,7 @@ private:
     double weight_;
 
 public:
-    Vector x, r, start, direction, v, t, z, loaded;
+    Vector x, r, start, direction, v, t, z, loaded, best;
 };
 
 } // namespace
@@ -178,19 +181,24 @@ Convergence saddle(MixedOperator &form, Search &displacement, PressureInverse &p
     const Norms first = it.norms(it.r);
     const double reference = std::hypot(first.forces, first.volumes);
     double rho = 0, alpha = 1, omega = 1, norm = first.larger();
+    double least = norm, leap = first_leap;
+    bool gained = false;
     int beginnings = 0;
     found.history.push_back(norm / reference);
     for (int i = 0;; ++i) {
         if (norm <= problem.rtol * reference || i == problem.most) {
+            if (norm > least)
+                it.x = it.best;
             it.residual();
-            norm = it.norms(it.r).larger();
+            least = norm = it.norms(it.r).larger();
+            it.best = it.x;
             found.converged = norm <= problem.rtol * reference * (1 + 1e-6);
             found.rounded = !found.converged && ++beginnings > most_beginnings;
             rho = 0;
         }
         found.residual = norm / reference;
         watch(i, found.residual);
-        if (found.converged || found.rounded || i == problem.most)
+        if (found.converged || found.rounded || found.indefinite || i == problem.most)
             break;
         const double before = std::exchange(
             rho, rho == 0 ? 0.0 : it.sum([&](std::size_t j) { return it.start[j] * it.r[j]; }));
@@ -222,9 +230,18 @@ Convergence saddle(MixedOperator &form, Search &displacement, PressureInverse &p
             it.r[j] -= omega * it.t[j];
         });
         norm = it.norms(it.r).larger();
-        if (!std::isfinite(norm) || omega == 0) {
-            found.indefinite = true;
-            break;
+        const bool broken = !std::isfinite(norm) || omega == 0;
+        if (broken || norm > leap * least) {
+            found.indefinite = !gained && (broken || leap >= last_leap);
+            leap = gained ? first_leap : leap * leap;
+            gained = false;
+            it.x = it.best;
+            norm = least;
+            rho = 0;
+        } else if (norm < least / 2) {
+            it.best = it.x;
+            least = norm;
+            gained = true;
         }
         found.history.push_back(norm / reference);
     }

@@ -47,7 +47,8 @@ struct SaddleProblem {
 /// Solves for u (controls, 3) and p (pressures,), which come in with zeros.
 ///
 /// BiCGStab (H. A. van der Vorst, SIAM J. Sci. Stat. Comput. 13, 1992), preconditioned from the
-/// right by the block triangular [A B^T; 0 -S]^-1; an iteration applies the form twice. Converged
+/// right by the block triangular [A B^T; 0 -S]^-1; an iteration applies the form twice. Where its
+/// residual leaps away it begins anew from the best answer so far. Converged
 /// where both parts of the true residual, forces and weighted changes of volume, are below rtol of
 /// the right-hand side. `history` has the larger of both.
 Convergence saddle(MixedOperator &form, Search &displacement, PressureInverse &pressure,

@@ -154,3 +154,19 @@ def test_a_cornered_tet_is_solved_once_it_is_split() -> None:
     assert solution.held_tets == 0
     assert solution.residual < 1e-12
     assert np.abs(solution.reactions["corner"].force + [0, 0, 0.1]).max() < 1e-12
+
+
+@pytest.mark.parametrize("load", [1e-200, 1.0])
+def test_tiny_loads_have_answers_in_proportion(load: float) -> None:
+    """Squares of 1e-200 are none; the direct solver divided by their sum."""
+    pull = [bz.Traction("top", value=(load, 0, 0))]
+    solution = bz.solve(body(loads=pull, incompressible=True), solver="direct")
+    assert solution.residual < 1e-12
+    assert solution.pressure is not None
+    assert 0.1 < np.abs(solution.pressure.at(np.full((1, 3), 0.3)))[0] / load < 10
+
+
+def test_a_huge_load_is_said_to_leave_the_range() -> None:
+    pull = [bz.Traction("top", value=(1e200, 0, 0))]
+    with pytest.raises(bz.InputError, match="leave the range of floating-point numbers"):
+        bz.solve(body(loads=pull, incompressible=True), solver="direct")

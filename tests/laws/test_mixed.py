@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
+from bezsoma.equations import locked
 from bezsoma.equations.level import undetermined, without_mean
 from bezsoma.equations.locked import held_tets, unlocked
 from bezsoma.equations.mixed import coupling, mixed_matrix
@@ -145,6 +146,32 @@ def test_two_parts_have_a_level_each() -> None:
     p = without_mean(np.arange(16.0), found, pressures)
     assert np.abs(bz.Field(pressures, p).integral()) < ROUNDING
     assert np.abs(bz.Field(pressures, p * found[0]).integral()) < ROUNDING
+
+
+@pytest.mark.parametrize("dense", [800, 0])
+@pytest.mark.parametrize("sides", [SIDES, SIDES[:5], SIDES[4:]])
+@pytest.mark.parametrize(
+    ("cells", "k", "m"), [(1, 2, 1), (1, 3, 2), (1, 3, 1), (2, 2, 1), (2, 3, 2)]
+)
+def test_undetermined_pressures_are_found_in_groups_of_tets(
+    cells: int, k: int, m: int, sides: tuple[str, ...], dense: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Against the rank of the whole matrix of the coupling; no single tet of a cube shows it."""
+    monkeypatch.setattr(locked, "DENSE", dense)
+    net, pressures = (ControlNet(block(cells=cells), n) for n in (k, m))
+    held = np.zeros((net.count, 3), bool)
+    for side in sides:
+        held[net.of_place(side)] = True
+    soft = np.zeros(len(net.mesh.tets), bool)
+    modes = undetermined(net, pressures, held, soft)
+    work = coupling(net, pressures).toarray()[:, ~held.ravel()]
+    open_ones = pressures.count - np.linalg.matrix_rank(work, tol=1e-9) - len(modes)
+    if open_ones:
+        with pytest.raises(bz.InputError, match="nothing is left to determine their pressure"):
+            locked.refuse_undetermined(net, pressures, held, soft, modes)
+    else:
+        assert locked.refuse_undetermined(net, pressures, held, soft, modes) >= 0
+    assert bool(open_ones) == (cells == 1 and len(sides) > 2 and m == k - 1)
 
 
 def test_a_split_keeps_places_regions_and_volume() -> None:

@@ -24,6 +24,13 @@ MESHES = (
 
 CPP = (
     Mutant(
+        "residuals that leap away followed for ever",
+        f"{CORE}/saddle.cpp",
+        "norm > leap * least",
+        "norm > 1e300 * least",
+        MIXED_FREE,
+    ),
+    Mutant(
         "the mean strain taken out of the deviator twice as often as it should",
         f"{CORE}/mixed_kernel.hpp",
         "swelling * (2.0 / 3.0)",

@@ -355,7 +355,7 @@ PYTHON = (
     Mutant(
         "a pressure that is positive in tension",
         f"{EQUATIONS}/mixed.py",
-        "weights = -mesh.volumes[:, None, None] * mesh.gradients",
+        "weights = -mesh.volumes[tets, None, None] * mesh.gradients[tets]",
         "weights = mesh.volumes[:, None, None] * mesh.gradients",
         PRESSURE,
     ),
@@ -393,6 +393,13 @@ PYTHON = (
         "return np.flatnonzero(whole[net.of_vertices(net.mesh.tets)].all(axis=1))",
         "return np.flatnonzero(whole[net.of_vertices(net.mesh.tets[:, :0])].any(axis=1))",
         ("tests/laws/test_mixed.py", "tests/faults/test_mixed.py"),
+    ),
+    Mutant(
+        "held tets looked at one by one",
+        f"{EQUATIONS}/locked.py",
+        "links = np.concatenate([free[net.of_tet[tets]], own[pressures.of_tet[tets]]], axis=1)",
+        "links = np.concatenate([free[net.of_tet[tets]], own[pressures.of_tet[tets]]], axis=1) & 0",
+        ("tests/laws/test_mixed.py",),
     ),
     Mutant(
         "a torn mesh that holds together",

@@ -92,7 +92,7 @@ def _write_pictures(folder: Path, case: Case, solution: Solution) -> None:
             surface=output.surface or ("skin" if "skin" in solution.body.mesh.surfaces else None),
             view=view,
             label=LABELS[name],
-            title=f"{LABELS[name]} (degree {solution.body.degree})",
+            title=f"{LABELS[name]} (displacement of degree {solution.body.degree})",
         )
 
 

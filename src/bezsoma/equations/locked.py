@@ -9,20 +9,28 @@ are not determined. A vertex in the middle cures both: `unlocked`.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from scipy.sparse import coo_array, csc_array, csr_array, diags_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import eigsh
 
-from bezsoma import bernstein
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.mixed import coupling
 from bezsoma.errors import InputError
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.split import split
 
 NOTHING = 1e-12
-"""A singular value that counts as none, relative to the largest."""
+"""An eigenvalue that counts as none, of the products of rows of length one."""
+SHIFT = 1e-9
+DENSE = 800
+"""Numbers of the pressure up to which all eigenvalues are looked at; beyond, only the least."""
 
 
 def held_tets(net: ControlNet, held: Bools) -> Ints:
@@ -51,40 +59,72 @@ def unlocked(body: Body) -> Body:
     return replace(body, mesh=split(body.mesh, tets)) if len(tets) else body
 
 
-def refuse_undetermined(net: ControlNet, pressure_net: ControlNet, held: Bools, soft: Bools) -> int:
+def refuse_undetermined(
+    net: ControlNet, pressure_net: ControlNet, held: Bools, soft: Bools, modes: Floats
+) -> int:
     """How many tets are held at all four vertices; refuse those with undetermined pressures.
 
-    A pressure control that only one tet has works on the free displacements of that tet and on
-    nothing else. Where these are fewer in rank, some pressure of it is free to take any value.
+    A pressure control all of whose tets are held works on the free displacements of these tets and
+    on nothing else. Where its group of tets has fewer of these in rank than such controls, some
+    pressure is free to take any value. Expected are the `modes` (j, cp) of `level.undetermined`,
+    whose mean is set to zero; soft (t,) has kappa < inf.
     """
     tets = held_tets(net, held)
-    own = np.bincount(pressure_net.of_tet.ravel(), minlength=pressure_net.count) == 1
-    bad = [t for t in tets[~soft[tets]] if _is_short(net, pressure_net, held, own, int(t))]
-    if bad:
-        centre = net.mesh.points[net.mesh.tets[bad[0]]].mean(axis=0).round(3).tolist()
-        raise InputError(
-            f"{len(bad)} tets have so much of their boundary prescribed that nothing is left to "
-            f"determine their pressure at nu = 1/2, the first around {centre} mm; cut them in four "
-            "first: solve(unlocked(body)), or on a mesh split(mesh, tets)"
-        )
+    for group, own in _groups(net, pressure_net, held, tets[~soft[tets]]):
+        free = np.setdiff1d(_components(net, group), np.flatnonzero(held))
+        work = coupling(net, pressure_net, group)[own][:, free]
+        elsewhere = np.ones(pressure_net.count, bool)
+        elsewhere[own] = False
+        expected = int((modes[:, elsewhere] == 0).all(axis=1).sum())
+        if _is_short(work, expected):
+            centre = net.mesh.points[net.mesh.tets[group]].mean(axis=(0, 1)).round(3).tolist()
+            raise InputError(
+                f"{len(group)} tets have so much of their boundary prescribed that nothing is left "
+                f"to determine their pressure at nu = 1/2, around {centre} mm; cut them in four "
+                "first: solve(unlocked(body)), or on a mesh split(mesh, tets), or in a case file "
+                "split_held_tets = true"
+            )
     return len(tets)
 
 
-def _is_short(net: ControlNet, pressures: ControlNet, held: Bools, own: Bools, tet: int) -> bool:
-    """Whether a pressure of this tet alone, not the constant, works on no free displacement."""
-    mine = np.flatnonzero(own[pressures.of_tet[tet]])
-    if not len(mine):
-        return False
-    work = _work(net, pressures, tet)[mine][:, ~held[net.of_tet[tet]].ravel()]
-    if len(mine) == pressures.of_tet.shape[1]:
-        work = np.concatenate([work, np.ones((len(mine), 1))], axis=1)
-    sizes = np.linalg.svd(work, compute_uv=False)
-    whole = float(np.abs(_work(net, pressures, tet)).max())
-    return bool((sizes > NOTHING * whole).sum() < len(mine))
+def _groups(
+    net: ControlNet, pressures: ControlNet, held: Bools, tets: Ints
+) -> Iterator[tuple[Ints, Ints]]:
+    """Tets that share a free control or a pressure of theirs alone, and those pressures."""
+    if not len(tets):
+        return
+    shares = np.bincount(pressures.of_tet.ravel(), minlength=pressures.count)
+    mine = np.bincount(pressures.of_tet[tets].ravel(), minlength=pressures.count)
+    own = mine == shares
+    free: Bools = np.asarray(~held.all(axis=1))
+    links = np.concatenate([free[net.of_tet[tets]], own[pressures.of_tet[tets]]], axis=1)
+    ends = np.concatenate([net.of_tet[tets], net.count + pressures.of_tet[tets]], axis=1)
+    rows, columns = links.nonzero()
+    whole = len(tets) + net.count + pressures.count
+    edges = (np.ones(len(rows), bool), (rows, len(tets) + ends[rows, columns]))
+    label = connected_components(coo_array(edges, shape=(whole, whole)), directed=False)[1]
+    for number in np.unique(label[: len(tets)]):
+        group = tets[label[: len(tets)] == number]
+        controls = np.unique(pressures.of_tet[group])
+        if own[controls].any():
+            yield group, controls[own[controls]]
 
 
-def _work(net: ControlNet, pressures: ControlNet, tet: int) -> Floats:
-    """The means of q dv_k/dx_k on one tet (mq, 3m)."""
-    means = bernstein.gradient_moments(net.degree, pressures.degree, 3)
-    work = np.einsum("iab,ik->bak", means, net.mesh.gradients[tet])
-    return np.asarray(work.reshape(len(work), -1))
+def _components(net: ControlNet, tets: Ints) -> Ints:
+    """The components of the displacement on these tets, 3 a control, in ascending order."""
+    return np.asarray((3 * np.unique(net.of_tet[tets])[:, None] + np.arange(3)).ravel())
+
+
+def _is_short(work: csr_array[Any], expected: int) -> bool:
+    """Whether more than the expected combinations of the rows (n, m) vanish; rows at any size."""
+    size = np.sqrt(np.asarray(work.multiply(work).sum(axis=1)).ravel())
+    if not size.all():
+        return int((size == 0).sum()) > expected or _is_short(work[size > 0], expected)
+    rows = diags_array(1 / size) @ work
+    products = csc_array(rows @ rows.T)
+    if len(size) <= DENSE:
+        least = np.linalg.eigvalsh(products.toarray())[: expected + 1]
+    else:
+        start = np.random.default_rng(0).standard_normal(len(size))
+        least = eigsh(products, expected + 1, sigma=-SHIFT, v0=start, return_eigenvectors=False)
+    return bool((least < NOTHING).sum() > expected)

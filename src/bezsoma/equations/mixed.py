@@ -130,18 +130,21 @@ def mixed_matrix(
     return MixedMatrix(assembled(net, lam, mu, threads), coupling(net, pressure_net), softness)
 
 
-def coupling(net: ControlNet, pressure_net: ControlNet) -> csr_array[Any]:
+def coupling(
+    net: ControlNet, pressure_net: ControlNet, tets: Ints | slice = slice(None)
+) -> csr_array[Any]:
     """The matrix (cp, 3c) of -int q div v [mm3 a mm], column 3a + k for component k of control a.
 
-    On a tet it is -V sum_i g_ik times the mean of q dB_a/dL_i, a quotient of binomials (the
-    divergence is the sum of the paper's six-entry row of eq. 41 over the normal strains).
+    Over all tets, or those given. On a tet it is -V sum_i g_ik times the mean of q dB_a/dL_i, a
+    quotient of binomials (the divergence is the sum of the paper's six-entry row of eq. 41 over the
+    normal strains).
     """
     mesh = net.mesh
     means = bernstein.gradient_moments(net.degree, pressure_net.degree, 3)
-    weights = -mesh.volumes[:, None, None] * mesh.gradients
+    weights = -mesh.volumes[tets, None, None] * mesh.gradients[tets]
     blocks = np.einsum("iab,tik->tbak", means, weights)
-    columns = 3 * net.of_tet[:, None, :, None] + np.arange(3)
-    rows = pressure_net.of_tet[:, :, None, None]
+    columns = 3 * net.of_tet[tets][:, None, :, None] + np.arange(3)
+    rows = pressure_net.of_tet[tets][:, :, None, None]
     return _summed(rows, columns, blocks, (pressure_net.count, 3 * net.count))
 
 

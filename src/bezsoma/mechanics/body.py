@@ -94,6 +94,7 @@ def _pressure_degree(body: Body) -> int | None:
     for name in ("incompressible", "pressure_breaks"):
         if not isinstance(getattr(body, name), bool | np.bool_):
             raise InputError(f"{name} = {getattr(body, name)!r}: it is True or False")
+        object.__setattr__(body, name, bool(getattr(body, name)))
     given = body.pressure_degree
     if given is None and body.incompressible:
         given = body.degree - 1

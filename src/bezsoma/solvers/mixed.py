@@ -94,8 +94,8 @@ def _equations(
     with watch.stage("supports", f"{3 * net.count} displacements, {pressures.count} pressures"):
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
-        locked = refuse_undetermined(net, pressures, known.mask, soft)
         modes = undetermined(net, pressures, known.mask, soft)
+        locked = refuse_undetermined(net, pressures, known.mask, soft, modes)
         refuse_flux(net, pressures, modes, soft, known.values)
     free = int(known.mask.size - known.mask.sum()) + pressures.count
     chosen, why = mixed_choice(free, solver)

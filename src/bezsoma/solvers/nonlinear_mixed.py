@@ -107,8 +107,8 @@ def mixed_problem(
     pressures = pressure_net(body.mesh, body.pressure_degree, body.pressure_breaks)
     soft = np.array([np.isfinite(kappa_of(law)) for law in body.material_of_region])
     soft = soft[body.mesh.region]
-    refuse_undetermined(net, pressures, equations.held, soft)
     modes = undetermined(net, pressures, equations.held, soft)
+    refuse_undetermined(net, pressures, equations.held, soft, modes)
     refuse_changed_volume(net, pressures, modes, laws, equations.known.values)
     stiffness = frozen(np.array([shear_at_rest(law) for law in laws]))
     internal = MixedPointwise(net, pressures, laws, exactness)

@@ -74,10 +74,10 @@ def saddle(
         how = "broke down"
     raise NotConverged(
         f"the iterations for displacement and pressure {how} after {len(history) - 1} steps, at "
-        f"{residual:.3g} of the residual at the start; rtol = {rtol:g} was asked for. Tets with "
-        "all four vertices held lock and slow them down, and so do very flat tets: look at the "
-        "mesh (bezsoma mesh info), take a larger rtol, a lower degree, or solver='direct' on a "
-        "small problem",
+        f"{residual:.3g} of the residual at the start at best; rtol = {rtol:g} was asked for. What "
+        "slows them down is flat tets (a thin layer), stiffnesses that differ 1e4 times and more "
+        "between neighbours, and tets with all four vertices held: look at the mesh (bezsoma mesh "
+        "info), take a larger rtol, a lower degree, or solver='direct' on a small problem",
         history,
     )
 

@@ -75,7 +75,10 @@ def direct_saddle(
 
 
 def _length(x: Floats) -> float:
-    return float(np.sqrt(np.einsum("i,i->", x, x)))
+    """The Euclidean norm, of tiny and huge numbers too, whose squares leave the range."""
+    size = float(np.abs(x).max(initial=0.0)) or 1.0
+    y = x / size
+    return size * float(np.sqrt(np.einsum("i,i->", y, y)))
 
 
 def _scaled(equations: MixedEquations, matrix: MixedMatrix) -> _Scaled:

@@ -35,6 +35,8 @@ NOTICE = "Research software, not a medical device."
 _DPI = 100
 _BESIDE = 8
 """So many names of bands have room beside each other."""
+_LETTER = 0.0175
+"""The width of a letter under the colour bar, of the bar's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -373,4 +375,6 @@ def _colour_bar(figure: Figure, layout: Layout, corner: tuple[int, int], bar: Ba
 
 def _far(value: float, levels: Floats, span: tuple[float, float]) -> bool:
     """Whether a number beside the bar's end does not run into the next one."""
-    return bool((np.abs(levels - value) > 0.07 * (span[1] - span[0])).all())
+    letters = np.array([len(f"{each:.3g}") + len(f"{value:.3g}") for each in levels]) / 2
+    apart = np.maximum(0.07, _LETTER * letters) * (span[1] - span[0])
+    return bool((np.abs(levels - value) > apart).all())
