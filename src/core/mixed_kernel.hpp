@@ -16,8 +16,8 @@ template <int m> struct PressureOrder {
     double multinomial[controls(m)] = {};
     constexpr PressureOrder() {
         for (int i = 0; i < controls(m); ++i) {
-            row[i] = EntityOrder<m>{}.row[3 * i] / 3;
-            multinomial[i] = 1 / LadderScales<m>{}.top[row[i]];
+            row[i] = entity_order<m>.row[3 * i] / 3;
+            multinomial[i] = 1 / ladder_scales<m>.top[row[i]];
         }
     }
 };
