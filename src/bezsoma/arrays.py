@@ -21,3 +21,8 @@ def frozen(array: npt.NDArray[T]) -> npt.NDArray[T]:
     """The same array, made read-only: what frozen dataclasses hold and caches hand out."""
     array.flags.writeable = False
     return array
+
+
+def plain(x: npt.ArrayLike) -> Floats:
+    """The same numbers as the core takes them: float64, one after another in memory."""
+    return np.ascontiguousarray(x, dtype=np.float64)

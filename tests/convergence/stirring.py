@@ -6,17 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 import bezsoma as bz
 from bezsoma.mesh import TetMesh
-from convergence.waves import times
+from convergence.waves import PHASE, WAVE, Floats, held_and_loaded, times
 
-Floats = npt.NDArray[np.float64]
-
-WAVE = np.array([[2.0, 1.0, -1.5], [-1.0, 2.5, 1.0], [1.5, -1.0, 2.0]])
 ACROSS = np.cross(WAVE, [[0.3, 0.2, 0.5], [0.4, -0.3, 0.2], [0.1, 0.5, -0.2]])
-PHASE = np.array([0.3, -0.4, 0.9])
 PUSH = np.array([1.0, -2.0, 1.5])
 
 
@@ -55,15 +50,9 @@ class Stirring:
 def errors(mesh: TetMesh, normals: Floats, degree: int, lower: int, fine: int) -> Floats:
     """L2 errors of u and p with a pressure of degree `lower`: every other plane held."""
     flow = Stirring(0.01)
-    held = [f"plane {i}" for i in range(0, len(normals), 2)]
-    loads = [
-        bz.Traction(f"plane {i}", value=lambda x, n=normals[i]: flow.stress(x) @ n, exactness=fine)
-        for i in range(1, len(normals), 2)
-    ]
-    force = bz.BodyForce(flow.body_force, exactness=fine)
-    support = bz.Prescribed(*held, value=flow.displacement)
+    supports, loads = held_and_loaded(flow, normals, fine)
     law = bz.LinearElastic(3 * flow.G, 0.5)
-    body = bz.Body(mesh, degree, law, [support], [*loads, force], pressure_degree=lower)
+    body = bz.Body(mesh, degree, law, supports, loads, pressure_degree=lower)
     solution = bz.solve(body, solver="direct", rtol=1e-10)
     assert solution.pressure is not None
     u, p = solution.displacement, solution.pressure

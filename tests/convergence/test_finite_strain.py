@@ -10,7 +10,17 @@ import pytest
 
 import bezsoma as bz
 from bezsoma.mechanics.laws import Law
-from convergence.waves import PHASE, SIZE, WAVE, Floats, Waves, irregular, regular, times
+from convergence.waves import (
+    PHASE,
+    SIZE,
+    WAVE,
+    Floats,
+    Waves,
+    held_and_loaded,
+    irregular,
+    regular,
+    times,
+)
 from tolerances import RATE_SLACK
 
 CELLS = {1: (8, 12), 2: (2, 4), 3: (2, 3), 4: (2, 3), 5: (1, 2)}
@@ -51,14 +61,8 @@ class FiniteWaves:
 def errors(mesh: bz.TetMesh, normals: Floats, degree: int, law: Law) -> Floats:
     """The L2 and H1 errors: every other plane held, exact dead tractions elsewhere."""
     waves, fine = FiniteWaves(law), 2 * degree + 5
-    held = [f"plane {i}" for i in range(0, len(normals), 2)]
-    loads = [
-        bz.Traction(f"plane {i}", value=lambda x, n=normals[i]: waves.stress(x) @ n, exactness=fine)
-        for i in range(1, len(normals), 2)
-    ]
-    force = bz.BodyForce(waves.body_force, exactness=fine)
-    support = bz.Prescribed(*held, value=waves.displacement)
-    body = bz.Body(mesh, degree, law, [support], [*loads, force])
+    supports, loads = held_and_loaded(waves, normals, fine)
+    body = bz.Body(mesh, degree, law, supports, loads)
     u = bz.solve(body, exactness=fine).displacement
     return np.array([u.l2_error(waves.displacement, fine), u.h1_error(waves.gradient, fine)])
 

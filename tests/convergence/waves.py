@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import permutations
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -123,6 +124,32 @@ def cut_in_eight(points: Floats, tets: npt.NDArray[np.int64]) -> tuple[Floats, F
     return np.concatenate([points, points[edges].mean(axis=1)]), children
 
 
+class Motion(Protocol):
+    """A displacement and what a body needs to bear it."""
+
+    def displacement(self, x: Floats) -> Floats:
+        """U (p, 3) mm."""
+
+    def stress(self, x: Floats) -> Floats:
+        """What a traction on a plane is made from (p, 3, 3), MPa."""
+
+    def body_force(self, x: Floats) -> Floats:
+        """Minus the divergence of it (p, 3), N/mm3."""
+
+
+def held_and_loaded(
+    move: Motion, normals: Floats, fine: int
+) -> tuple[list[bz.Prescribed], list[bz.Traction | bz.BodyForce]]:
+    """Every other plane held, exact tractions on the others and the body force, by quadrature."""
+    held = [f"plane {i}" for i in range(0, len(normals), 2)]
+    tractions = [
+        bz.Traction(f"plane {i}", value=lambda x, n=normals[i]: move.stress(x) @ n, exactness=fine)
+        for i in range(1, len(normals), 2)
+    ]
+    force = bz.BodyForce(move.body_force, exactness=fine)
+    return [bz.Prescribed(*held, value=move.displacement)], [*tractions, force]
+
+
 def errors(mesh: TetMesh, normals: Floats, degree: int, waves: Waves) -> Floats:
     """The L2 and H1 errors of the answer: every other plane held, exact tractions elsewhere.
 
@@ -130,14 +157,8 @@ def errors(mesh: TetMesh, normals: Floats, degree: int, waves: Waves) -> Floats:
     higher order than what is measured, and so is that of the solver, stopped at 1e-11.
     """
     fine = 2 * degree + 4
-    held = [f"plane {i}" for i in range(0, len(normals), 2)]
-    loads = [
-        bz.Traction(f"plane {i}", value=lambda x, n=normals[i]: waves.stress(x) @ n, exactness=fine)
-        for i in range(1, len(normals), 2)
-    ]
-    force = bz.BodyForce(waves.body_force, exactness=fine)
-    support = bz.Prescribed(*held, value=waves.displacement)
+    supports, loads = held_and_loaded(waves, normals, fine)
     law = bz.LinearElastic(waves.E, waves.nu)
-    body = bz.Body(mesh, degree, law, [support], [*loads, force])
+    body = bz.Body(mesh, degree, law, supports, loads)
     u = bz.solve(body, solver="cg", rtol=1e-11).displacement
     return np.array([u.l2_error(waves.displacement, fine), u.h1_error(waves.gradient, fine)])

@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 import skfem as fem
 from scipy.sparse.linalg import spsolve
-from skfem.helpers import ddot, det, grad, identity, inv, mul, transpose
 
 import bezsoma as bz
 from bezsoma import bernstein
+from twins.neo_hooke import forms
 
 MU, LAM = 0.4, 0.9
 SAME = 1e-8
@@ -27,26 +25,7 @@ def body(degree: int) -> bz.Body:
     return bz.Body(mesh, degree, bz.NeoHooke(E, nu), [bz.Fixed("left"), moved])
 
 
-def stress(F: Any) -> Any:
-    """P = mu (F - F^-T) + lambda ln J F^-T."""
-    T = transpose(inv(F))
-    return MU * (F - T) + LAM * np.log(det(F)) * T
-
-
-@fem.BilinearForm
-def tangent(du: Any, v: Any, w: Any) -> Any:
-    """DP : grad v."""
-    F, dF = grad(w["u"]) + identity(w["u"].grad), grad(du)
-    T = transpose(inv(F))
-    turned = mul(T, mul(transpose(dF), T))
-    dP = MU * (dF + turned) + LAM * (ddot(T, dF) * T - np.log(det(F)) * turned)
-    return ddot(dP, grad(v))
-
-
-@fem.LinearForm
-def internal(v: Any, w: Any) -> Any:
-    """P : grad v."""
-    return ddot(stress(grad(w["u"]) + identity(w["u"].grad)), grad(v))
+tangent, internal = forms(MU, LAM)
 
 
 @pytest.mark.parametrize("degree", [1, 2])

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from bezsoma import _core
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Floats, plain
 from bezsoma.equations.matrix_free import walk
 from bezsoma.mesh.control_net import ControlNet
 
@@ -83,7 +83,7 @@ class MixedFree:
     def apply(self, u: Floats, p: Floats) -> tuple[Floats, Floats]:
         """Forces (c, 3) N and changes of volume (cp,) mm3."""
         f, g = np.empty((len(u), 3)), np.empty(len(p))
-        self.kernel.apply(_flat(u), _flat(p), f, g)
+        self.kernel.apply(plain(u), plain(p), f, g)
         return f, g
 
     def energy(self, u: Floats, p: Floats) -> float:
@@ -92,14 +92,10 @@ class MixedFree:
         From gradients, as that of `MatrixFree`. For a p that is not -kappa div u it is neither
         convex nor concave in both.
         """
-        return self.kernel.work(_flat(u), _flat(p)) / 2
+        return self.kernel.work(plain(u), plain(p)) / 2
 
     def mass(self, weight: Floats, p: Floats) -> Floats:
         """int weight p B_b (cp,), with one weight a region (regions,)."""
         g = np.empty(len(p))
-        self.kernel.mass(_flat(weight), _flat(p), g)
+        self.kernel.mass(plain(weight), plain(p), g)
         return g
-
-
-def _flat(x: Floats) -> Floats:
-    return np.ascontiguousarray(x, dtype=np.float64)

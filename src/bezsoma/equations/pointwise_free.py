@@ -9,10 +9,35 @@ from functools import cached_property
 import numpy as np
 
 from bezsoma import _core, bernstein
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Floats, plain
 from bezsoma.equations.inadmissible import refuse_inadmissible
 from bezsoma.equations.matrix_free import walk
 from bezsoma.mesh.control_net import ControlNet
+
+
+def pointwise_kernel(
+    net: ControlNet,
+    laws: tuple[_core.Law, ...],
+    rule: tuple[Floats, Floats],
+    threads: int,
+    instructions: str,
+    single: bool = False,
+    pressures: ControlNet | None = None,
+) -> _core.Pointwise:
+    """The core's side of laws on a net by a rule of points and weights, also beside a pressure."""
+    points, weights = rule
+    return _core.Pointwise(
+        walk(net, np.zeros((len(net.mesh.regions), 2))),
+        list(laws),
+        points,
+        weights,
+        bernstein.values(net.degree - 1, points),
+        threads,
+        instructions,
+        single,
+        pressures.degree if pressures else 0,
+        pressures.walked() if pressures else None,
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +85,8 @@ class PointwiseFree:
         return self._kernel(single=True)
 
     def _kernel(self, single: bool) -> _core.Pointwise:
-        return _core.Pointwise(
-            walk(self.net, np.zeros((len(self.net.mesh.regions), 2))),
-            list(self.laws),
-            self.points,
-            self.weights,
-            bernstein.values(self.net.degree - 1, self.points),
-            self.threads,
-            self.instructions,
-            single,
-        )
+        rule = self.points, self.weights
+        return pointwise_kernel(self.net, self.laws, rule, self.threads, self.instructions, single)
 
     @property
     def symmetric(self) -> bool:
@@ -79,7 +96,7 @@ class PointwiseFree:
     def forces(self, u: Floats) -> Floats:
         """The internal forces (c, 3) N at u (c, 3) mm."""
         f = np.empty((self.net.count, 3))
-        self.kernel.forces(np.ascontiguousarray(u, dtype=np.float64), f)
+        self.kernel.forces(plain(u), f)
         refuse_inadmissible(self.kernel, self.net.mesh, self.points, f)
         return f
 
@@ -89,14 +106,14 @@ class PointwiseFree:
 
     def energy(self, u: Floats) -> float:
         """The stored energy [N mm]; every law has to have one."""
-        energy = self.kernel.energy(np.ascontiguousarray(u, dtype=np.float64))
+        energy = self.kernel.energy(plain(u))
         refuse_inadmissible(self.kernel, self.net.mesh, self.points, np.array(energy))
         return energy
 
     def least_jacobian(self, u: Floats) -> tuple[float, int, int]:
         """The least J = det(I + H) of all points, with its tet and point; inf at small strain."""
         f = np.empty((self.net.count, 3))
-        self.kernel.forces(np.ascontiguousarray(u, dtype=np.float64), f)
+        self.kernel.forces(plain(u), f)
         return self.kernel.least_jacobian
 
 
@@ -115,7 +132,7 @@ class Tangent:
     def apply(self, du: Floats) -> Floats:
         """The change of the forces (c, 3) N for a change du (c, 3) mm."""
         df = np.empty_like(self.u)
-        self.operator.kernel.tangent(self.u, np.ascontiguousarray(du, dtype=np.float64), df)
+        self.operator.kernel.tangent(self.u, plain(du), df)
         return df
 
     def apply_single(self, du: Floats) -> Floats:

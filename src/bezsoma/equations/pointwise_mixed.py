@@ -8,10 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from bezsoma import _core, bernstein
-from bezsoma.arrays import Floats
+from bezsoma import _core
+from bezsoma.arrays import Floats, plain
 from bezsoma.equations.inadmissible import refuse_inadmissible
-from bezsoma.equations.matrix_free import walk
+from bezsoma.equations.pointwise_free import pointwise_kernel
 from bezsoma.mesh.control_net import ControlNet
 
 
@@ -32,6 +32,7 @@ class PointwiseMixed:
 
     The linear law does what needs no quadrature:
 
+    >>> from bezsoma import bernstein
     >>> from bezsoma.equations.mixed_free import MixedFree
     >>> from bezsoma.mesh.solids import block
     >>> mesh = block(cells=2, irregular=0.3)
@@ -55,16 +56,9 @@ class PointwiseMixed:
     @cached_property
     def kernel(self) -> _core.Pointwise:
         """The core's side of it."""
-        return _core.Pointwise(
-            walk(self.net, np.zeros((len(self.net.mesh.regions), 2))),
-            list(self.laws),
-            self.points,
-            self.weights,
-            bernstein.values(self.net.degree - 1, self.points),
-            self.threads,
-            self.instructions,
-            pressure_degree=self.pressures.degree,
-            first_pressure=self.pressures.walked(),
+        rule, net = (self.points, self.weights), self.pressures
+        return pointwise_kernel(
+            self.net, self.laws, rule, self.threads, self.instructions, pressures=net
         )
 
     @property
@@ -75,24 +69,24 @@ class PointwiseMixed:
     def forces(self, u: Floats, p: Floats) -> tuple[Floats, Floats]:
         """The internal forces f (c, 3) N and changes of volume g (cp,) mm3."""
         f, g = np.empty((self.net.count, 3)), np.empty(self.pressures.count)
-        self.kernel.mixed_forces(_plain(u), _plain(p), f, g)
+        self.kernel.mixed_forces(plain(u), plain(p), f, g)
         refuse_inadmissible(self.kernel, self.net.mesh, self.points, f)
         return f, g
 
     def tangent(self, u: Floats, p: Floats) -> MixedTangent:
         """The derivative of both at (u, p), as what it does to a change of them."""
-        return MixedTangent(self, _plain(u).copy(), _plain(p).copy())
+        return MixedTangent(self, plain(u).copy(), plain(p).copy())
 
     def energy(self, u: Floats, p: Floats) -> float:
         """Int W' - p (J - 1) - p^2 / (2 kappa) [N mm], whose derivatives are f and g."""
-        energy = self.kernel.mixed_energy(_plain(u), _plain(p))
+        energy = self.kernel.mixed_energy(plain(u), plain(p))
         refuse_inadmissible(self.kernel, self.net.mesh, self.points, np.array(energy))
         return energy
 
     def least_jacobian(self, u: Floats) -> tuple[float, int, int]:
         """The least J = det(I + H) of all points, with its tet and point; inf at small strain."""
         f, p = np.empty((self.net.count, 3)), np.zeros(self.pressures.count)
-        self.kernel.mixed_forces(_plain(u), p, f, np.empty_like(p))
+        self.kernel.mixed_forces(plain(u), p, f, np.empty_like(p))
         return self.kernel.least_jacobian
 
 
@@ -112,9 +106,5 @@ class MixedTangent:
     def apply(self, du: Floats, dp: Floats) -> tuple[Floats, Floats]:
         """The changes of f (c, 3) N and g (cp,) mm3."""
         df, dg = np.empty_like(self.u), np.empty_like(self.p)
-        self.operator.kernel.mixed_tangent(self.u, self.p, _plain(du), _plain(dp), df, dg)
+        self.operator.kernel.mixed_tangent(self.u, self.p, plain(du), plain(dp), df, dg)
         return df, dg
-
-
-def _plain(x: Floats) -> Floats:
-    return np.ascontiguousarray(x, dtype=np.float64)

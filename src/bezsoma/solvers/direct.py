@@ -15,6 +15,8 @@ from bezsoma.equations.displacement import Equations
 from bezsoma.errors import InputError
 from bezsoma.solvers.krylov import Report, length
 
+DIRECT_UP_TO = 3000
+"""Unknowns up to which the direct solver is chosen, in every form: above, iterations are ahead."""
 REFINEMENTS = 10
 LARGEST = 2**31 - 1
 """SuperLU counts entries in 32 bits."""

@@ -26,6 +26,7 @@ from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.mesh.torn import pressure_net
+from bezsoma.solvers.direct import DIRECT_UP_TO
 from bezsoma.solvers.krylov import Report
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.saddle_direct import direct_saddle
@@ -37,8 +38,6 @@ LOCKED_FROM = 0.45
 """Poisson's ratio from which linear tets miss a tenth of the work of a load and more."""
 CHEAPER_FROM = {2: 0.45, 3: 0.49, 4: 0.499, 5: 0.499, 6: 0.499}
 """Poisson's ratio, of those measured, from which the mixed form is the cheaper one, by degree."""
-DIRECT_UP_TO = 3000
-"""Unknowns up to which the direct solver is chosen for the mixed form."""
 
 
 def mixed_solution(body: Body, solver: str, rtol: float, threads: int, watch: Watch) -> Solution:

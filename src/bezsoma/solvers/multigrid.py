@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from bezsoma import _core
@@ -34,6 +36,18 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     corners, places, held_vertices = degree_one(net, held, first)
     walk = operator.walk(stiff, first)
     return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
+
+
+def preconditioned(operator: MatrixFree, held: Bools) -> Callable[[Floats], Floats]:
+    """What takes r (c, 3) N to z (c, 3): `preconditioner`, built once, as a function."""
+    blocks = preconditioner(operator, held)
+
+    def z_of(r: Floats) -> Floats:
+        z = np.empty_like(r)
+        blocks.apply(np.ascontiguousarray(r), z)
+        return z
+
+    return z_of
 
 
 def degree_one(

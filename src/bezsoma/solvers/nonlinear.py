@@ -26,9 +26,10 @@ from bezsoma.mechanics.path import body_at
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
+from bezsoma.solvers.direct import DIRECT_UP_TO
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
 from bezsoma.solvers.memory import refuse_what_does_not_fit
-from bezsoma.solvers.multigrid import preconditioner
+from bezsoma.solvers.multigrid import preconditioned
 from bezsoma.solvers.newton import Balance, Iteration, Rule, System, extent
 from bezsoma.solvers.nonlinear_mixed import applied, factored, level, mixed_problem
 from bezsoma.solvers.solution import Solution, resultants
@@ -163,7 +164,6 @@ _SOLVES = {
     "direct": "tangents factored (SuperLU)",
     "multigrid": "tangents applied, preconditioned by the linear law's blocks and multigrid",
 }
-DIRECT_UP_TO = 3000
 
 
 def _choice(free: int, solver: str) -> str:
@@ -222,14 +222,7 @@ def _preconditioner(
     """The preconditioner of the linear laws that the laws are near rest; never built anew."""
     lame = frozen(np.array([at_rest(law) for law in pointwise.laws]))
     operator = MatrixFree(equations.net, lame, threads)
-    blocks = preconditioner(operator, equations.held)
-
-    def apply(r: Floats) -> Floats:
-        z = np.empty_like(r)
-        blocks.apply(np.ascontiguousarray(r), z)
-        return z
-
-    return apply
+    return preconditioned(operator, equations.held)
 
 
 def _balance(

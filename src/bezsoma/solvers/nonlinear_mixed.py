@@ -27,7 +27,7 @@ from bezsoma.mechanics.laws import FunctionLaw, MixedLaw, shear_at_rest
 from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.torn import pressure_net
 from bezsoma.solvers.gmres import minimal_residual
-from bezsoma.solvers.multigrid import preconditioner
+from bezsoma.solvers.multigrid import preconditioned
 from bezsoma.solvers.newton import Balance, Breakdown, Correction, Linearised, System, extent
 from bezsoma.solvers.tangents import Factored
 
@@ -217,13 +217,8 @@ def applied(problem: MixedProblem, threads: int) -> Callable[[Floats, float], Li
     net, pressures = problem.equations.net, problem.internal.pressure_net
     G = problem.stiffness
     operator = MatrixFree(net, frozen(np.stack([G, G], axis=1)), threads)
-    multigrid = preconditioner(operator, problem.equations.held)
+    blocks = preconditioned(operator, problem.equations.held)
     mass = splu(csc_array(pressure_mass(pressures, 1 / G[net.mesh.region])))
-
-    def blocks(r: Floats) -> Floats:
-        z = np.empty_like(r)
-        multigrid.apply(np.ascontiguousarray(r), z)
-        return z
 
     def at(x: Floats, fraction: float) -> Linearised:
         follow = problem.equations.follow(problem.parted(x)[0], fraction)

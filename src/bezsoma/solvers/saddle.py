@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from bezsoma import _core
-from bezsoma.arrays import Bools, Floats
+from bezsoma.arrays import Bools, Floats, plain
 from bezsoma.equations.matrix_free import walk
 from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.errors import NotConverged
@@ -34,7 +34,7 @@ def preconditioner(operator: MixedFree, held: Bools, levels: Floats) -> _core.Sa
         held,
         held_vertices,
         1 / (2 * G) + compressibility,
-        _contiguous(levels),
+        plain(levels),
     )
 
 
@@ -64,7 +64,7 @@ def saddle(
     solver = preconditioner(operator, held, levels)
     u, p = np.zeros_like(f), np.zeros_like(g)
     history, residual, converged, broken, rounded = solver.solve(
-        np.where(held, 0.0, f), _contiguous(g), u, p, unit, 2 * G**2 / unit, rtol, most, report
+        np.where(held, 0.0, f), plain(g), u, p, unit, 2 * G**2 / unit, rtol, most, report
     )
     history[-1] = residual
     if converged:
@@ -86,10 +86,6 @@ def _unit(operator: MixedFree) -> float:
     """G h, N/mm: by which the displacement's preconditioner is scaled to order one, for float32."""
     h = float(np.cbrt(operator.net.mesh.volumes.mean()))
     return float(operator.moduli[:, 0].max()) * h
-
-
-def _contiguous(x: Floats) -> Floats:
-    return np.ascontiguousarray(x, dtype=np.float64)
 
 
 def _orthogonal(levels: Floats) -> Floats:

@@ -22,7 +22,7 @@ from bezsoma.errors import InputError, NotConverged, unknown
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
-from bezsoma.solvers.direct import direct
+from bezsoma.solvers.direct import DIRECT_UP_TO, direct
 from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_cholesky
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.mixed import advice, mixed_solution
@@ -34,8 +34,6 @@ from bezsoma.solvers.watch import Progress, Watch, in_range
 MOST_THREADS = 1024
 Steps = int | str | Sequence[float]
 SOLVERS = ("auto", "direct", "multigrid", "cg", "saddle")
-DIRECT_UP_TO = 3000
-"""Unknowns up to which the direct solver is chosen: above, multigrid is ahead at every degree."""
 
 
 def solve(
