@@ -114,7 +114,7 @@ class Multigrid:
         self,
         k: MatrixFree,
         walk: Walk,
-        corners: Int32s,
+        corners: Int32s | None,
         points: Floats,
         held: Bools,
         held_vertices: Bools,
@@ -139,7 +139,7 @@ class Saddle:
         self,
         form: MixedFree,
         walk: Walk,
-        corners: Int32s,
+        corners: Int32s | None,
         points: Floats,
         held: Bools,
         held_vertices: Bools,
@@ -168,7 +168,8 @@ class Law:
     stiffening_mean_engineering, stiffening_energy, stiffening_deviatoric (kappa, mu, A);
     st_venant_kirchhoff, neo_hooke, neo_hooke_isochoric (kappa, mu); mooney_rivlin and
     veronda_westmann (kappa, c1, c2); ogden (kappa, mu_1, alpha_1, mu_2, alpha_2, ...);
-    guccione (kappa, C, bf, bt, bfs, f (3), s (3), n (3)). kappa = inf is for the mixed form only.
+    guccione (kappa, C, bf, bt, bfs, the unit vector of the fibres (3)). kappa = inf is for the
+    mixed form only.
 
     P is tested against grad v: the stress tau at small strain, first Piola-Kirchhoff at finite
     strain. The mixed form has P(H, p) and c(H, p), tested against q: - tr eps - p/kappa at small

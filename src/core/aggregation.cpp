@@ -7,6 +7,7 @@
 #include "aggregates.hpp"
 #include "galerkin.hpp"
 #include "prolongation.hpp"
+#include "spare.hpp"
 #include "sweeps.hpp"
 
 namespace bezsoma {
@@ -139,6 +140,7 @@ Aggregation::Aggregation(BlockRows matrix, const double *points, const std::uint
 
 /// Makes the next coarser matrix and the motions of its rows, unless nothing hangs together.
 bool Aggregation::coarsen(Level &level, BlockRows &matrix, Motions &of_rows) {
+    give_back_spare_memory();
     const BlockRows &a = level.a.matrix();
     const std::vector<float> inverse = level.a.inverse_diagonal(team_);
     level.residual.resize(size_of(a.rows() * a.high) + BlockRows::slack);
@@ -166,6 +168,7 @@ bool Aggregation::coarsened(Level &level, const std::vector<float> &inverse, dou
     // 4/3 of its inverse: the step that flattens the spectrum most (Vanek, Mandel, Brezina).
     level.p = smoothed(a, inverse, 4 / (3 * largest), made.basis, groups, team_);
     std::vector<float>().swap(made.basis);
+    give_back_spare_memory();
     level.columns = columns_of(level.p, groups.count, team_);
     std::optional<BlockRows> coarse = galerkin(a, level.p, level.columns, most, team_);
     if (!coarse)

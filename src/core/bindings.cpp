@@ -252,7 +252,7 @@ public:
     }
 
     void apply(In<double, -1, 3, -1> x, nb::ndarray<double, nb::shape<-1, 3, -1>, nb::c_contig> y) {
-        apply_to(k(), x, y);
+        apply_to(form(), x, y);
     }
 
     void apply_single(In<float, -1, 3, -1> x,
@@ -262,14 +262,14 @@ public:
     }
 
     double work(In<double, -1, 3> x) {
-        require(static_cast<std::int64_t>(x.shape(0)) == k().controls(),
+        require(static_cast<std::int64_t>(x.shape(0)) == form().controls(),
                 "x must have one row a control");
         nb::gil_scoped_release released;
         const Turn turn(turn_);
-        return k().work(x.data());
+        return form().work(x.data());
     }
 
-    bezsoma::ElasticOperator<double> &k() {
+    bezsoma::ElasticOperator<double> &form() {
         require(double_ != nullptr, "this operator was made for float32");
         return *double_;
     }
@@ -309,7 +309,7 @@ public:
                     first.shape(1) ==
                         static_cast<std::size_t>(bezsoma::entities_of_tet(pressure_degree)),
                 "the pressure's first must have a row a tet and a column for each entity");
-        require(numbered_by_walk(pressure_degree, first),
+        require(numbered_by_walk(pressure_degree, first) > 0,
                 "the pressure must be numbered as the walk over the tets first touches it");
         team_.watch(listen_to_signals);
         nb::gil_scoped_release released;
@@ -359,109 +359,131 @@ private:
     std::unique_ptr<bezsoma::MixedOperator> operator_;
 };
 
+using Corners = In<std::int32_t, -1, 4>;
+
+/// About the inverse of the stiffness of a displacement with its supports: blocks of entities, and
+/// degree 1 by multigrid, which is all there is at degree 1.
+struct Inverse {
+    std::vector<std::uint8_t> held;
+    std::unique_ptr<bezsoma::Preconditioner> blocks;
+    std::unique_ptr<bezsoma::Aggregation> aggregation;
+
+    /// `form` is the MatrixFree or MixedFree whose team works; corners (tets, 4) are the rows of
+    /// each tet's vertices, whose places are points and whose fixed components held_vertices. The
+    /// walk is used up: its numbering has done its work halfway, and is much of the memory.
+    template <class Form>
+    Inverse(Form &form, Walk &walk, const std::optional<Corners> &corners,
+            const In<double, -1, 3> &points, const In<bool, -1, 3> &fixed,
+            const In<bool, -1, 3> &held_vertices) {
+        const bezsoma::ElasticTets tets = walk.tets();
+        const auto vertices = static_cast<std::int64_t>(points.shape(0));
+        require(corners ? corners->shape(0) == walk.corners.shape(0) &&
+                              bezsoma::within(*corners, points.shape(0))
+                        : tets.degree == 1,
+                "corners must number the vertices of the walk's tets; none are at degree 1 alone");
+        require(fixed.shape(0) == static_cast<std::size_t>(form.form().controls()) &&
+                    held_vertices.shape(0) == points.shape(0) &&
+                    (corners || fixed.shape(0) == points.shape(0)) &&
+                    numbered_by_walk(tets.degree, walk.first) == form.form().controls(),
+                "held and held_vertices must fit the walk's controls and vertices");
+        held.assign(fixed.data(), fixed.data() + fixed.size());
+        const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
+                                                    held_vertices.data() + held_vertices.size());
+        const std::int32_t *rows = corners ? corners->data() : tets.first;
+        nb::gil_scoped_release released;
+        const Turn turn(form.turn());
+        if (tets.degree > 1)
+            blocks = std::make_unique<bezsoma::Preconditioner>(tets, rows, vertices, held.data(),
+                                                               form.form().chunks(), form.kernels(),
+                                                               form.team());
+        bezsoma::BlockRows matrix =
+            bezsoma::vertex_matrix(tets, rows, vertices, at_vertices.data(), form.team());
+        {
+            nb::gil_scoped_acquire counted;
+            walk.first = {};
+        }
+        aggregation = std::make_unique<bezsoma::Aggregation>(std::move(matrix), points.data(),
+                                                             at_vertices.data(), form.team());
+    }
+
+    bezsoma::Search search(bezsoma::Team &team) {
+        return {blocks.get(), [this](const float *r, float *z) { aggregation->apply(r, z); }, team};
+    }
+
+    std::size_t bytes() const { return (blocks ? blocks->bytes() : 0) + aggregation->bytes(); }
+};
+
+auto told(const bezsoma::Convergence &found) {
+    return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite,
+                          found.rounded);
+}
+
 /// The preconditioner of a body with its supports, and the iteration that it serves.
 class Multigrid {
 public:
-    Multigrid(MatrixFree &k, const Walk &walk, In<std::int32_t, -1, 4> corners,
+    Multigrid(MatrixFree &k, Walk &walk, const std::optional<Corners> &corners,
               In<double, -1, 3> points, In<bool, -1, 3> held, In<bool, -1, 3> held_vertices)
-        : k_(k) {
-        const bezsoma::ElasticTets tets = walk.tets();
-        const auto vertices = static_cast<std::int64_t>(points.shape(0));
-        require(corners.shape(0) == walk.corners.shape(0) &&
-                    held.shape(0) == static_cast<std::size_t>(k.k().controls()) &&
-                    held_vertices.shape(0) == points.shape(0),
-                "corners, held and held_vertices must fit the tets, controls and vertices");
-        held_.assign(held.data(), held.data() + held.size());
-        const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
-                                                    held_vertices.data() + held_vertices.size());
-        nb::gil_scoped_release released;
-        const Turn turn(k_.turn());
-        if (tets.degree > 1)
-            blocks_ = std::make_unique<bezsoma::Preconditioner>(tets, corners.data(), vertices,
-                                                                held_.data(), k.k().chunks(),
-                                                                k.kernels(), k.team());
-        aggregation_ = std::make_unique<bezsoma::Aggregation>(
-            bezsoma::vertex_matrix(tets, corners.data(), vertices, at_vertices.data(), k.team()),
-            points.data(), at_vertices.data(), k.team());
-    }
+        : k_(k), inverse_(k, walk, corners, points, held, held_vertices) {}
 
     auto solve(In<double, -1, 3> f, Vectors x, double reference, double rtol, int most,
                const std::function<void(int, double)> &report) {
-        require(f.size() == held_.size() && x.size() == held_.size(),
+        require(f.size() == inverse_.held.size() && x.size() == inverse_.held.size(),
                 "f and x must have one row a control");
         bezsoma::Convergence found;
         {
             nb::gil_scoped_release released;
             const Turn turn(k_.turn());
             found = bezsoma::conjugate_gradients(
-                k_.k(), blocks_.get(), [&](const float *r, float *z) { aggregation_->apply(r, z); },
-                held_.data(), f.data(), x.data(), reference, rtol, most, k_.team(),
-                [&](int iteration, double residual) {
+                k_.form(), inverse_.search(k_.team()), inverse_.held.data(), f.data(), x.data(),
+                reference, rtol, most, k_.team(), [&](int iteration, double residual) {
                     nb::gil_scoped_acquire held;
                     report(iteration, residual);
                 });
         }
-        return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite,
-                              found.rounded);
+        return told(found);
     }
 
     /// z = B r.
     void apply(In<double, -1, 3> r, Vectors z) {
-        require(r.size() == held_.size() && z.size() == held_.size(),
+        const auto &held = inverse_.held;
+        require(r.size() == held.size() && z.size() == held.size(),
                 "r and z must have one row a control");
         nb::gil_scoped_release released;
         const Turn turn(k_.turn());
-        std::vector<double> from(r.data(), r.data() + r.size()), to(r.size() + 16);
+        std::vector<double> from(r.data(), r.data() + r.size()), to(r.size() + bezsoma::padding);
         from.resize(to.size());
-        bezsoma::Search search{
-            blocks_.get(), [&](const float *x, float *y) { aggregation_->apply(x, y); }, k_.team()};
-        search.take(from.data(), 1.0, held_.size());
+        bezsoma::Search search = inverse_.search(k_.team());
+        search.take(from.data(), 1.0, held.size());
         search.follow(1.0, 0.0, to.data());
-        for (std::size_t i = 0; i < held_.size(); ++i)
-            z.data()[i] = held_[i] ? 0.0 : to[i];
+        for (std::size_t i = 0; i < held.size(); ++i)
+            z.data()[i] = held[i] ? 0.0 : to[i];
     }
 
-    std::vector<std::int64_t> levels() const { return aggregation_->sizes(); }
-    std::size_t bytes() const { return (blocks_ ? blocks_->bytes() : 0) + aggregation_->bytes(); }
+    std::vector<std::int64_t> levels() const { return inverse_.aggregation->sizes(); }
+    std::size_t bytes() const { return inverse_.bytes(); }
 
 private:
     MatrixFree &k_;
-    std::vector<std::uint8_t> held_;
-    std::unique_ptr<bezsoma::Preconditioner> blocks_;
-    std::unique_ptr<bezsoma::Aggregation> aggregation_;
+    Inverse inverse_;
 };
 
 /// What solves with a MixedFree: its displacement's blocks and multigrid, its pressure's mass.
 class Saddle {
 public:
     /// The walk's moduli are the lambda and mu of the displacement's preconditioner.
-    Saddle(MixedFree &form, const Walk &walk, In<std::int32_t, -1, 4> corners,
+    Saddle(MixedFree &form, Walk &walk, const std::optional<Corners> &corners,
            In<double, -1, 3> points, In<bool, -1, 3> held, In<bool, -1, 3> held_vertices,
            In<double, -1> weight, In<double, -1, -1> levels)
-        : form_(form) {
-        const bezsoma::ElasticTets tets = walk.tets();
-        const auto vertices = static_cast<std::int64_t>(points.shape(0));
-        require(corners.shape(0) == walk.corners.shape(0) &&
-                    held.shape(0) == static_cast<std::size_t>(form.form().controls()) &&
-                    held_vertices.shape(0) == points.shape(0) &&
-                    static_cast<std::int64_t>(weight.size()) == form.form().regions() &&
+        : form_(form), inverse_(form, walk, corners, points, held, held_vertices) {
+        require(static_cast<std::int64_t>(weight.size()) == form.form().regions() &&
                     levels.shape(1) == static_cast<std::size_t>(form.form().pressures()),
-                "corners, held, weight and levels must fit the tets, controls and regions");
-        held_.assign(held.data(), held.data() + held.size());
-        const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
-                                                    held_vertices.data() + held_vertices.size());
-        const std::vector<double> weights(weight.data(), weight.data() + weight.size());
-        const std::vector<double> out(levels.data(), levels.data() + levels.size());
+                "weight and levels must fit the regions and the pressure's controls");
+        std::vector<double> weights(weight.data(), weight.data() + weight.size());
+        std::vector<double> out(levels.data(), levels.data() + levels.size());
         nb::gil_scoped_release released;
         const Turn turn(form_.turn());
-        blocks_ = std::make_unique<bezsoma::Preconditioner>(tets, corners.data(), vertices,
-                                                            held_.data(), form.form().chunks(),
-                                                            form.kernels(), form.team());
-        aggregation_ = std::make_unique<bezsoma::Aggregation>(
-            bezsoma::vertex_matrix(tets, corners.data(), vertices, at_vertices.data(), form.team()),
-            points.data(), at_vertices.data(), form.team());
-        pressure_ =
-            std::make_unique<bezsoma::PressureInverse>(form.form(), weights, out, form.team());
+        pressure_ = std::make_unique<bezsoma::PressureInverse>(form.form(), std::move(weights),
+                                                               std::move(out), form.team());
     }
 
     auto solve(In<double, -1, 3> f, In<double, -1> g, Vectors u, Scalars p, double unit,
@@ -472,28 +494,23 @@ public:
         {
             nb::gil_scoped_release released;
             const Turn turn(form_.turn());
-            bezsoma::Search search{blocks_.get(),
-                                   [&](const float *r, float *z) { aggregation_->apply(r, z); },
-                                   form_.team()};
+            bezsoma::Search search = inverse_.search(form_.team());
             found = bezsoma::saddle(
                 form_.form(), search, *pressure_,
-                {held_.data(), f.data(), g.data(), unit, volume_weight, rtol, most}, u.data(),
-                p.data(), form_.team(), [&](int iteration, double residual) {
+                {inverse_.held.data(), f.data(), g.data(), unit, volume_weight, rtol, most},
+                u.data(), p.data(), form_.team(), [&](int iteration, double residual) {
                     nb::gil_scoped_acquire held;
                     report(iteration, residual);
                 });
         }
-        return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite,
-                              found.rounded);
+        return told(found);
     }
 
-    std::size_t bytes() const { return blocks_->bytes() + aggregation_->bytes(); }
+    std::size_t bytes() const { return inverse_.bytes(); }
 
 private:
     MixedFree &form_;
-    std::vector<std::uint8_t> held_;
-    std::unique_ptr<bezsoma::Preconditioner> blocks_;
-    std::unique_ptr<bezsoma::Aggregation> aggregation_;
+    Inverse inverse_;
     std::unique_ptr<bezsoma::PressureInverse> pressure_;
 };
 
@@ -543,9 +560,9 @@ NB_MODULE(_core, m) {
         .def_prop_ro("instructions", [](const MixedFree &k) { return k.kernels().name; })
         .def_prop_ro("threads", [](MixedFree &k) { return k.team().size(); });
     nb::class_<Multigrid>(m, "Multigrid")
-        .def(nb::init<MatrixFree &, const Walk &, In<std::int32_t, -1, 4>, In<double, -1, 3>,
+        .def(nb::init<MatrixFree &, Walk &, const std::optional<Corners> &, In<double, -1, 3>,
                       In<bool, -1, 3>, In<bool, -1, 3>>(),
-             "k"_a, "walk"_a, "corners"_a, "points"_a, "held"_a, "held_vertices"_a,
+             "k"_a, "walk"_a, "corners"_a.none(), "points"_a, "held"_a, "held_vertices"_a,
              nb::keep_alive<1, 2>())
         .def("solve", &Multigrid::solve, "f"_a, "x"_a, "reference"_a, "rtol"_a, "most"_a,
              "report"_a)
@@ -553,10 +570,10 @@ NB_MODULE(_core, m) {
         .def_prop_ro("levels", &Multigrid::levels)
         .def_prop_ro("bytes", &Multigrid::bytes);
     nb::class_<Saddle>(m, "Saddle")
-        .def(nb::init<MixedFree &, const Walk &, In<std::int32_t, -1, 4>, In<double, -1, 3>,
+        .def(nb::init<MixedFree &, Walk &, const std::optional<Corners> &, In<double, -1, 3>,
                       In<bool, -1, 3>, In<bool, -1, 3>, In<double, -1>, In<double, -1, -1>>(),
-             "form"_a, "walk"_a, "corners"_a, "points"_a, "held"_a, "held_vertices"_a, "weight"_a,
-             "levels"_a, nb::keep_alive<1, 2>())
+             "form"_a, "walk"_a, "corners"_a.none(), "points"_a, "held"_a, "held_vertices"_a,
+             "weight"_a, "levels"_a, nb::keep_alive<1, 2>())
         .def("solve", &Saddle::solve, "f"_a, "g"_a, "u"_a, "p"_a, "unit"_a, "volume_weight"_a,
              "rtol"_a, "most"_a, "report"_a)
         .def_prop_ro("bytes", &Saddle::bytes);

@@ -42,18 +42,24 @@ inline void require(bool holds, const char *what) {
         throw nb::value_error(what);
 }
 
-/// Whether each run of controls begins where the walk first touches it.
-inline bool numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
+/// Whether all numbers are at least 0 and below a count.
+bool within(const auto &numbers, std::size_t count) {
+    return std::all_of(numbers.data(), numbers.data() + numbers.size(),
+                       [=](auto i) { return i >= 0 && static_cast<std::size_t>(i) < count; });
+}
+
+/// How many controls there are where each run begins as the walk first touches it; -1 where not.
+inline std::int32_t numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
     std::int32_t next = 0;
     const std::size_t per_tet = first.shape(1);
     for (std::size_t i = 0; i < first.size(); ++i) {
         const std::int32_t run = first.data()[i];
         if (run < 0 || run > next)
-            return false;
+            return -1;
         if (run == next)
             next += controls_inside(degree, static_cast<int>(i % per_tet));
     }
-    return true;
+    return next;
 }
 
 /// Tets in the order of the walk that numbered their controls.
@@ -75,21 +81,17 @@ struct Walk {
 
     ElasticTets tets() const {
         require(degree >= 1 && degree <= 10, "degree must be 1 to 10");
+        require(first.is_valid(), "this walk is used up by the preconditioner that it made");
         require(first.shape(1) == static_cast<std::size_t>(entities_of_tet(degree)),
                 "first must have a column for each entity that holds controls");
         const std::size_t tets = corners.shape(0);
         require(tets > 0 && first.shape(0) == tets && order.shape(0) == tets &&
                     region.shape(0) == tets,
                 "first, order, corners and region must have one row a tet");
-        const auto within = [](const auto &numbers, std::size_t count) {
-            return std::all_of(numbers.data(), numbers.data() + numbers.size(), [=](auto i) {
-                return i >= 0 && static_cast<std::size_t>(i) < count;
-            });
-        };
         require(within(order, tets) && within(corners, points.shape(0)) &&
                     within(region, lame.shape(0)),
                 "order, corners and region must number tets, points and rows of lame");
-        require(numbered_by_walk(degree, first),
+        require(numbered_by_walk(degree, first) > 0,
                 "controls must be numbered as the walk over the tets first touches them");
         return {degree,
                 static_cast<std::int64_t>(tets),

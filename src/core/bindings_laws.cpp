@@ -237,7 +237,7 @@ private:
         require(first.shape(0) == walk.first.shape(0) &&
                     first.shape(1) == static_cast<std::size_t>(entities_of_tet(degree)),
                 "the pressure's first must have a row a tet and a column for each entity");
-        require(numbered_by_walk(degree, first),
+        require(numbered_by_walk(degree, first) > 0,
                 "the pressure must be numbered as the walk over the tets first touches it");
     }
 
@@ -295,7 +295,12 @@ void bind_laws(nb::module_ &m) {
         .def_prop_ro("parameters", [](const LawAtPoints &law) { return law.law().parameters; })
         .def_prop_ro("finite", [](const LawAtPoints &law) { return law.kernel().finite; })
         .def_prop_ro("has_energy", [](const LawAtPoints &law) { return law.kernel().has_energy; })
-        .def_prop_ro("splits", &LawAtPoints::splits);
+        .def_prop_ro("splits", &LawAtPoints::splits)
+        // Pickled without its instruction set: the widest where it comes back.
+        .def("__reduce__", [](const nb::object &self) {
+            return nb::make_tuple(self.type(),
+                                  nb::make_tuple(self.attr("name"), self.attr("parameters")));
+        });
     m.def("law_names", [] {
         std::vector<std::string> names;
         for (const LawName &law : bezsoma::law_names)

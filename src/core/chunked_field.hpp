@@ -16,9 +16,6 @@ namespace bezsoma {
 /// of own controls, which are most of what it would move: it works on the vectors in place.)
 template <class T> class ChunkedField {
 public:
-    /// Numbers that a kernel may read past the end of a chunk's controls.
-    static constexpr std::size_t padding = 16;
-
     ChunkedField(Chunks chunks, int components)
         : chunks_(std::move(chunks)), components_(components),
           foreign_(static_cast<std::size_t>(components * chunks_.foreign)) {}

@@ -16,6 +16,9 @@
 
 namespace bezsoma {
 
+/// Numbers that a kernel may read past the end of the controls it works on.
+constexpr std::size_t padding = 16;
+
 /// Entities of a tet that hold controls at this degree, and the controls inside each.
 int entities_of_tet(int degree);
 int controls_inside(int degree, int entity);

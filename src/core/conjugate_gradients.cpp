@@ -11,7 +11,6 @@ namespace bezsoma {
 
 namespace {
 
-constexpr std::size_t padding = 16;
 constexpr int most_beginnings = 3; // from the true residual, before rounding is taken as the reason
 
 } // namespace
@@ -37,14 +36,13 @@ void Search::follow(double norm, double beta, double *p) {
                     [&](std::size_t i) { p[i] = beta * p[i] + norm * double{z_[i]}; });
 }
 
-Convergence conjugate_gradients(ElasticOperator<double> &k, Preconditioner *blocks,
-                                const VertexSolver &vertices, const std::uint8_t *fixed,
-                                const double *f, double *x, double reference, double rtol, int most,
-                                Team &team, const Watch &watch) {
+Convergence conjugate_gradients(ElasticOperator<double> &k, Search search,
+                                const std::uint8_t *fixed, const double *f, double *x,
+                                double reference, double rtol, int most, Team &team,
+                                const Watch &watch) {
     const std::size_t length = 3 * static_cast<std::size_t>(k.controls());
     Pieces pieces(length, team);
     std::vector<double> r(length + padding), p(length + padding), q(length);
-    Search search(blocks, vertices, team);
     Convergence found;
     const auto true_residual = [&] {
         k.apply(x, q.data());

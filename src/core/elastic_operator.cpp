@@ -12,7 +12,6 @@ namespace {
 // u and f of a chunk fit the second-level cache, and small meshes still give every thread its
 // share.
 constexpr std::int64_t most_controls = 12000, least_controls = 1500, shares = 64;
-constexpr std::size_t padding = 16; // numbers that a gather may read past the end
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 

@@ -5,7 +5,8 @@ namespace bezsoma {
 
 namespace {
 
-constexpr std::int64_t slab = 8192; // rows of A P that stand at a time
+// Rows of eight numbers of A P that stand at a time: 4 MB.
+constexpr std::int64_t slab = 1 << 17;
 
 std::int32_t of(std::size_t i) { return static_cast<std::int32_t>(i); }
 
@@ -78,8 +79,8 @@ public:
           next_(columns.start.begin(), columns.start.end() - 1) {}
 
     void run() {
-        for (first_ = 0; first_ < a_.rows(); first_ += slab) {
-            last_ = std::min(first_ + slab, a_.rows());
+        for (first_ = 0; first_ < a_.rows(); first_ = last_) {
+            last_ = end_of_slab();
             const std::int64_t begin = ap_.start[size_of(first_)];
             rows_.assign(size_of(ap_.start[size_of(last_)] - begin) * n, Eight{});
             each_row(team_, last_ - first_, [&](std::size_t i, std::size_t thread) {
@@ -92,6 +93,12 @@ public:
     }
 
 private:
+    std::int64_t end_of_slab() const {
+        const auto begin = ap_.start.begin() + first_;
+        const auto end = std::upper_bound(begin + 1, ap_.start.end(), *begin + slab / n);
+        return first_ + std::max<std::int64_t>(end - begin - 1, 1);
+    }
+
     Eight *row(std::size_t i) {
         return rows_.data() + size_of(ap_.start[i] - ap_.start[size_of(first_)]) * n;
     }

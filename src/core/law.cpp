@@ -21,7 +21,7 @@ const LawName law_names[number_of_laws] = {
     {"mooney_rivlin", 3, false},
     {"ogden", 3, true},
     {"veronda_westmann", 3, false},
-    {"guccione", 14, false},
+    {"guccione", 8, false},
 };
 
 int law_numbered(const char *name) {

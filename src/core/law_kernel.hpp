@@ -47,13 +47,14 @@ template <class Law, bool mixed, class T, int lanes> void derivative(const AtPoi
     constexpr int components = Law::components + mixed;
     Watch<R> watch;
     for (int q = 0; q < at.count; ++q) {
-        Dual<R> state[components], answer[components];
+        R state[components], change[components], answer[components];
+        for (int c = 0; c < components; ++c) {
+            state[c] = load<T, lanes>(at.state + (q * components + c) * lanes);
+            change[c] = load<T, lanes>(at.change + (q * components + c) * lanes);
+        }
+        Law::template derivative<mixed>(at.parameters, at.terms, state, change, answer, watch);
         for (int c = 0; c < components; ++c)
-            state[c] = {load<T, lanes>(at.state + (q * components + c) * lanes),
-                        load<T, lanes>(at.change + (q * components + c) * lanes)};
-        Law::template stress<mixed>(at.parameters, at.terms, state, answer, watch);
-        for (int c = 0; c < components; ++c)
-            store<T, lanes>(at.answer + (q * components + c) * lanes, answer[c].d);
+            store<T, lanes>(at.answer + (q * components + c) * lanes, answer[c]);
     }
 }
 

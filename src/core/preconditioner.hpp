@@ -29,7 +29,7 @@ public:
                    Team &team);
 
     /// The half that reads r: keeps z of the blocks, gives the forces of the degree-1 problem in
-    /// `coarse` (vertices, 3) and returns r . z of the blocks. r is padded by 16 numbers.
+    /// `coarse` (vertices, 3) and returns r . z of the blocks. r is padded (see `padding`).
     double forward(const double *r, double norm, std::vector<float> &coarse);
 
     /// p = beta p + z, with z made of the blocks' and the degree-1 answer. p is padded likewise.

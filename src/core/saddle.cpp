@@ -11,7 +11,6 @@ namespace bezsoma {
 
 namespace {
 
-constexpr std::size_t padding = 16;
 constexpr int most_beginnings = 20;
 // BiCGStab's residuals leap, also where it converges. This far above the least one so far it begins
 // anew from where that was; where nothing was gained since the last beginning, the square as far.
@@ -97,9 +96,12 @@ public:
           weight_(problem.volume_weight * problem.volume_weight), x(all_ + padding), r(x), start(x),
           direction(x), v(x), t(x), z(x), loaded(x), best(x) {}
 
+    /// The sum of terms, a change of volume by how much it counts where it is: so that what the
+    /// soft tets miss is not lost beside what the stiff ones do.
     template <class Term> double sum(const Term &term) {
-        return of_forces_.sum(term) +
-               weight_ * of_volumes_.sum([&](std::size_t i) { return term(forces_ + i); });
+        const auto &volumes = pressure_.inverse_diagonal();
+        return of_forces_.sum(term) / problem_.unit +
+               of_volumes_.sum([&](std::size_t i) { return term(forces_ + i) * volumes[i]; });
     }
 
     Norms norms(const Vector &a) {
@@ -183,6 +185,7 @@ Convergence saddle(MixedOperator &form, Search &displacement, PressureInverse &p
     double rho = 0, alpha = 1, omega = 1, norm = first.larger();
     double least = norm, leap = first_leap;
     bool gained = false;
+    double begun = 0, begun_norm = 1; // |r|^2 in the sums' measure, and its norm, at a beginning
     int beginnings = 0;
     found.history.push_back(norm / reference);
     for (int i = 0;; ++i) {
@@ -203,10 +206,11 @@ Convergence saddle(MixedOperator &form, Search &displacement, PressureInverse &p
         const double before = std::exchange(
             rho, rho == 0 ? 0.0 : it.sum([&](std::size_t j) { return it.start[j] * it.r[j]; }));
         // At a start, or where the shadow has turned away from the residual: begin from there.
-        if (before == 0 || std::abs(rho) < 1e-14 * norm * reference) {
+        if (before == 0 || std::abs(rho) < 1e-14 * begun * (norm / begun_norm)) {
             it.residual();
             it.start = it.direction = it.r;
-            rho = it.sum([&](std::size_t j) { return it.r[j] * it.r[j]; });
+            begun = rho = it.sum([&](std::size_t j) { return it.r[j] * it.r[j]; });
+            begun_norm = norm;
         } else {
             const double beta = rho / before * (alpha / omega);
             it.each([&](std::size_t j) {

@@ -20,6 +20,9 @@ public:
     /// z = about the inverse times r, free of levels.
     void apply(const double *r, double *z);
 
+    /// 1 over the diagonal of the mass matrix, N/mm5: what makes changes of volume comparable.
+    const std::vector<double> &inverse_diagonal() const { return inverse_; }
+
     /// Takes the levels out of a vector.
     void project(double *p);
 

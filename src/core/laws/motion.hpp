@@ -96,10 +96,97 @@ template <class S> BEZSOMA_INLINE S second_invariant(const S (&E)[6]) {
     return E[0] * E[1] + E[1] * E[2] + E[2] * E[0] - (E[3] * E[3] + E[4] * E[4] + E[5] * E[5]);
 }
 
+/// What an isotropic law needs of a motion: J - 1, 1/J, tr E and I2(E).
+template <class S> struct Invariants {
+    S j, inverse, trace, second;
+};
+
 /// ln J.
-template <class R> BEZSOMA_INLINE R log_J(const Motion<R> &x) { return log1p(x.j); }
-template <class R> BEZSOMA_INLINE Dual<R> log_J(const Motion<Dual<R>> &x) {
+template <class R> BEZSOMA_INLINE R log_J(const Invariants<R> &x) { return log1p(x.j); }
+template <class R> BEZSOMA_INLINE Dual<R> log_J(const Invariants<Dual<R>> &x) {
     return {log1p(x.j.v), x.j.d * x.inverse.v};
+}
+
+/// An isotropic law: P = shear J (F - F^-T) + volume J F^-T + turned F (tr E I - E).
+template <class S> struct Weights {
+    S shear, volume, turned;
+};
+
+/// A motion with its change. A derivative is not small at rest, so F may stand here as it is.
+template <class R> struct Changing {
+    R F[3][3], dF[3][3], cof[3][3], dcof[3][3]; // cof = J F^-T
+    Dual<R> j;                                  // J - 1
+
+    BEZSOMA_INLINE Changing(const R *H, const R *dH) {
+        for (int k = 0; k < 9; ++k) {
+            F[k / 3][k % 3] = k % 4 ? H[k] : H[k] + 1;
+            dF[k / 3][k % 3] = dH[k];
+        }
+        j = {R{} - 1, R{}};
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l) {
+                const int a = (k + 1) % 3, b = (k + 2) % 3, c = (l + 1) % 3, d = (l + 2) % 3;
+                cof[k][l] = F[a][c] * F[b][d] - F[a][d] * F[b][c];
+                dcof[k][l] = crossed(F, dF, k, l);
+                j.d += cof[k][l] * dF[k][l];
+            }
+        for (int l = 0; l < 3; ++l)
+            j.v += F[0][l] * cof[0][l];
+    }
+
+    /// Entry kl of A x B, the form of which A x A = 2 cof A is the square.
+    static BEZSOMA_INLINE R crossed(const R (&A)[3][3], const R (&B)[3][3], int k, int l) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3, c = (l + 1) % 3, d = (l + 2) % 3;
+        return A[a][c] * B[b][d] - A[a][d] * B[b][c] + B[a][c] * A[b][d] - B[a][d] * A[b][c];
+    }
+
+    template <bool second> BEZSOMA_INLINE Invariants<Dual<R>> invariants() const {
+        using T = Scalar<R>;
+        Dual<R> trace = {R{} - T(1.5), R{}}, I2 = {R{} - T(0.75), R{}};
+        for (int k = 0; k < 9; ++k) {
+            const R &f = F[k / 3][k % 3], half = f * T(0.5);
+            trace += {half * f, f * dF[k / 3][k % 3]};
+        }
+        if constexpr (second) { // I2(C) = cof:cof = 3 + 4 tr E + 4 I2(E)
+            for (int k = 0; k < 9; ++k) {
+                const R quarter = cof[k / 3][k % 3] * T(0.25);
+                I2 += {quarter * cof[k / 3][k % 3], (quarter + quarter) * dcof[k / 3][k % 3]};
+            }
+            I2 = I2 - trace;
+        }
+        return {j, reciprocal(j + T(1)), trace, I2};
+    }
+
+    /// The change of P, with F (tr E I - E) = cof x F / 2 - F.
+    template <bool turns> BEZSOMA_INLINE void weighted(const Weights<Dual<R>> &w, R *dP) const {
+        using T = Scalar<R>;
+        const Dual<R> volume = w.volume - w.shear, half = w.turned * T(0.5);
+        Dual<R> plain = w.shear * (j + T(1));
+        if constexpr (turns)
+            plain = plain - w.turned;
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l) {
+                R found = plain.d * F[k][l] + plain.v * dF[k][l];
+                found += volume.d * cof[k][l] + volume.v * dcof[k][l];
+                if constexpr (turns)
+                    found += half.d * crossed(cof, F, k, l) +
+                             half.v * (crossed(dcof, F, k, l) + crossed(cof, dF, k, l));
+                dP[3 * k + l] = found;
+            }
+    }
+};
+
+/// The change of a stress, by dual numbers.
+template <class Law, bool mixed, class T, class R>
+BEZSOMA_INLINE void by_duals(const T *par, int n, const R *state, const R *change, R *found,
+                             Watch<R> &watch) {
+    constexpr int components = Law::components + mixed;
+    Dual<R> x[components], answer[components];
+    for (int c = 0; c < components; ++c)
+        x[c] = {state[c], change[c]};
+    Law::template stress<mixed>(par, n, x, answer, watch);
+    for (int c = 0; c < components; ++c)
+        found[c] = answer[c].d;
 }
 
 } // namespace bezsoma::BEZSOMA_ISA

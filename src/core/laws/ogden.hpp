@@ -32,7 +32,7 @@ template <class I> BEZSOMA_INLINE bool any(const I &x) {
 /// Jacobi's rotations, all lanes together until the last is diagonal.
 template <class R> BEZSOMA_INLINE Eigen<R> eigen(const R (&of)[6]) {
     using T = Scalar<R>;
-    constexpr T tiny = sizeof(T) == 8 ? T(1e-300) : T(1e-36),
+    constexpr T tiny = sizeof(T) == 8 ? T(1e-150) : T(1e-18),
                 done = sizeof(T) == 8 ? T(1e-34) : T(1e-16);
     R a[3][3] = {{of[0], of[3], of[5]}, {of[3], of[1], of[4]}, {of[5], of[4], of[2]}};
     R v[3][3] = {};
@@ -41,15 +41,17 @@ template <class R> BEZSOMA_INLINE Eigen<R> eigen(const R (&of)[6]) {
     for (int sweep = 0; sweep < 8; ++sweep) {
         const R off = a[0][1] * a[0][1] + a[1][2] * a[1][2] + a[2][0] * a[2][0];
         const R on = a[0][0] * a[0][0] + a[1][1] * a[1][1] + a[2][2] * a[2][2];
-        if (!any(off > on * done + tiny))
+        if (!any(off > on * done + tiny * tiny))
             break;
 #pragma GCC unroll 3
         for (int r = 0; r < 3; ++r) { // r is the axis turned about
             const int p = (r + 1) % 3, q = (r + 2) % 3;
-            const R d = a[q][q] - a[p][p], twice = a[p][q] + a[p][q];
-            const R length = sqrt(d * d + twice * twice) + tiny;
-            const R t = (d < 0 ? -twice : twice) / (abs(d) + length);
-            const R c = 1 / sqrt(1 + t * t), s = t * c;
+            // cos and sin of twice the angle, then of the angle: none is near zero.
+            const R d = a[q][q] - a[p][p], right = abs(d) + tiny;
+            const R up = d < 0 ? -a[p][q] : a[p][q];
+            const R length = reciprocal_root(right * right + 4 * (up * up));
+            const R cc = right * length * T(0.5) + T(0.5), per_c = reciprocal_root(cc);
+            const R c = cc * per_c, s = up * length * per_c, t = s * per_c;
             a[p][p] -= t * a[p][q];
             a[q][q] += t * a[p][q];
             a[p][q] = a[q][p] = R{};
@@ -83,7 +85,7 @@ template <int i, class R> BEZSOMA_INLINE R sinh_quotient(const R &yy) {
 
 /// Parameters kappa and n pairs mu_i, alpha_i.
 struct Ogden {
-    static constexpr bool splits = true;
+    static constexpr bool splits = true, of_invariants = false;
 
     template <class R> struct Principal {
         Eigen<R> frame;
@@ -213,25 +215,15 @@ struct Ogden {
         const R apart = x.log[a] - x.log[b], square = apart * apart;
         const auto close = square < T(0.0025);
         const R near = square < T(0.0025) ? square : R{};
-        const R root = sqrt((z[a] + 1) * (z[b] + 1) / (x.c[a] * x.c[b]));
-        const R limit = root * sinh_quotient<0>(near * (alpha * alpha / 4)) /
-                        sinh_quotient<0>(near) * (alpha / 2);
-        return close ? limit : (z[a] - z[b]) / (close ? R{} + 1 : x.c[a] - x.c[b]);
-    }
-
-    template <class T, class S, class R>
-    static BEZSOMA_INLINE void stress(const T *par, int n, const Motion<S> &x, S *P,
-                                      Watch<R> &watch) {
-        S E[6], s[6];
-        x.green(E);
-        second_piola(par, n, E, s, watch);
-        x.pushed(s, P);
+        const R square_root = (z[a] + 1) * (z[b] + 1) * (x.c[a] * x.c[b]);
+        const R over = reciprocal_root(square_root) * (z[a] + 1) * (z[b] + 1);
+        const R limit = over * sinh_quotient<0>(near * (alpha * alpha / 4)) * (alpha / 2);
+        return (close ? limit : z[a] - z[b]) / (close ? sinh_quotient<0>(near) : x.c[a] - x.c[b]);
     }
 
     template <class T, class R>
-    static BEZSOMA_INLINE R energy(const T *par, int n, const Motion<R> &motion, Watch<R> &watch) {
-        R E[6], sum = {};
-        motion.green(E);
+    static BEZSOMA_INLINE R energy(const T *par, int n, const R (&E)[6], Watch<R> &watch) {
+        R sum = {};
         const Principal<R> x = principal(par, n, E, watch);
         for (int i = 0; i < n; ++i)
             for (int a = 0; a < 3; ++a)

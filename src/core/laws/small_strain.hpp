@@ -101,6 +101,13 @@ template <class Measure> struct SmallStrain {
             tau[c] += volume;
     }
 
+    /// The change of tau for a change of e.
+    template <bool mixed, class T, class R>
+    static BEZSOMA_INLINE void derivative(const T *par, int n, const R *e, const R *de, R *dtau,
+                                          Watch<R> &watch) {
+        by_duals<SmallStrain, mixed>(par, n, e, de, dtau, watch);
+    }
+
     /// W, and mixed the potential W' - p tr eps - p^2 / (2 kappa).
     template <bool mixed, class T, class R>
     static BEZSOMA_INLINE R energy(const T *par, int, const R *e, Watch<R> &watch) {
