@@ -2,8 +2,9 @@
 """The algebra of one simplex: Bernstein polynomials of degree 0 to 20 in 0 to 3 dimensions.
 
 To be read in this order: `indices` (where a control stands), `basis` (what it multiplies),
-`nets` (what can be done with controls), `integrals` (closed forms), `quadrature` (where there is
-none); `rationals` keeps them exact.  The theory on two pages: docs/theory/bernstein.md.
+`nets` (what can be done with controls), `subdivision` (the same on smaller simplices), `bounds`
+(least and largest values), `integrals` (closed forms), `quadrature` (where there is none);
+`rationals` keeps them exact.  The theory on two pages: docs/theory/bernstein.md.
 
     p(L) = sum_alpha b_alpha B_alpha(L) :    a polynomial is its controls
 
@@ -19,6 +20,7 @@ none); `rationals` keeps them exact.  The theory on two pages: docs/theory/berns
 from __future__ import annotations
 
 from bezsoma.bernstein.basis import derivatives, interpolation, values
+from bezsoma.bernstein.bounds import bounds
 from bezsoma.bernstein.indices import (
     count,
     domain_points,
@@ -50,9 +52,19 @@ from bezsoma.bernstein.nets import (
     trace,
 )
 from bezsoma.bernstein.quadrature import simplex
+from bezsoma.bernstein.subdivision import (
+    bisection_children,
+    graph_distance,
+    restricted,
+    split_children,
+    uniform_children,
+    uniform_nets,
+)
 
 __all__ = [
+    "bisection_children",
     "blossom",
+    "bounds",
     "count",
     "de_casteljau",
     "de_casteljau_levels",
@@ -64,6 +76,7 @@ __all__ = [
     "face_mass",
     "gradient_moments",
     "gradient_products",
+    "graph_distance",
     "indices",
     "integral",
     "interpolation",
@@ -75,9 +88,13 @@ __all__ = [
     "parents",
     "position",
     "product",
+    "restricted",
     "restriction",
     "shifts",
     "simplex",
+    "split_children",
     "trace",
+    "uniform_children",
+    "uniform_nets",
     "values",
 ]

@@ -15,6 +15,7 @@ from bezsoma.mesh import evaluation
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.evaluation import Outside
 from bezsoma.mesh.functions import Function
+from bezsoma.mesh.subdivision import Subdivision, subdivision
 from bezsoma.mesh.tets import TetMesh
 
 if TYPE_CHECKING:
@@ -91,6 +92,11 @@ class BrokenField:
         raised = np.moveaxis(np.tensordot(matrix, self.controls, (1, 1)), 0, 1)
         return BrokenField(self.mesh, degree, raised)
 
+    def subdivided(self, into: Subdivision | None = None) -> BrokenField:
+        """The same polynomials on a finer mesh; see `Field.subdivided`."""
+        into = subdivision(self.mesh) if into is None else into
+        return BrokenField(into.fine, self.degree, into.nets(self))
+
     def averaged(self, net: ControlNet | None = None) -> Field:
         """The continuous field of the same degree from means over the tets at each control.
 
@@ -120,13 +126,16 @@ class BrokenField:
         means = [np.bincount(owner, weights * column, net.count) / total for column in local.T]
         return Field(net, np.stack(means, axis=1).reshape(net.count, *self.shape))
 
-    def bounds(self) -> tuple[Floats, Floats]:
+    def bounds(self, tolerance: float | None = None) -> tuple[Floats, Floats]:
         """A lower and an upper bound (...) of the values, component by component.
 
-        A Bernstein polynomial stays within the convex hull of its controls, so the least and the
-        largest control enclose it; elevation brings them closer.
+        `tolerance` as in `Field.bounds`.
         """
-        return self.controls.min(axis=(0, 1)), self.controls.max(axis=(0, 1))
+        return evaluation.bounds(self, tolerance)
+
+    def bounds_of_tets(self, tolerance: float | None = None) -> tuple[Floats, Floats]:
+        """A lower and an upper bound (t, ...) on every tet; see `Field.bounds_of_tets`."""
+        return evaluation.bounds_of_tets(self, tolerance)
 
     def largest(self) -> tuple[float, Floats]:
         """The largest magnitude in the domain points of all tets, and where it is, (3,) in mm.

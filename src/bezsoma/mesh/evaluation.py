@@ -86,12 +86,10 @@ def gradient_controls(field: TetPolynomials, tets: Ints | slice) -> Floats:
     """
     local = field.on_tets(tets)
     shifts = bernstein.shifts(field.degree, 3)
-    found = np.zeros((len(local), len(shifts), *field.shape, 3))
-    for i in (1, 2, 3):
-        step = local[:, shifts[:, i]] - local[:, shifts[:, 0]]
-        direction = field.degree * field.mesh.gradients[tets, i]
-        found += step[..., None] * direction.reshape(-1, *(1,) * (step.ndim - 1), 3)
-    return found
+    lowest = local[:, shifts[:, 0]]
+    steps = np.stack([local[:, shifts[:, i]] - lowest for i in (1, 2, 3)], axis=-1)
+    rows = steps.reshape(len(local), -1, 3) @ (field.degree * field.mesh.gradients[tets, 1:])
+    return np.asarray(rows.reshape(steps.shape))
 
 
 def tabulated(field: TetPolynomials, bary: Floats, tets: Ints | slice = slice(None)) -> Floats:
@@ -228,6 +226,30 @@ def _distance(
         square = ((found - wanted.reshape(found.shape)) ** 2).reshape(*found.shape[:2], -1)
         total += np.einsum("t,q,tqk->", field.mesh.volumes[part], weights, square)
     return float(np.sqrt(total))
+
+
+def bounds_of_tets(field: TetPolynomials, tolerance: float | None = None) -> tuple[Floats, Floats]:
+    """A lower and an upper bound (t, ...) of the values on every tet, component by component."""
+    low, high = (np.empty((len(field.mesh.tets), *field.shape)) for _ in range(2))
+    for part in tet_portions(field, bernstein.count(field.degree, 3)):
+        low[part], high[part] = bernstein.bounds(field.on_tets(part), field.degree, 3, tolerance)
+    return low, high
+
+
+def bounds(field: TetPolynomials, tolerance: float | None = None) -> tuple[Floats, Floats]:
+    """A lower and an upper bound (...) of the values on the mesh, component by component.
+
+    With a tolerance only those tets are subdivided whose controls exceed, by more than that, the
+    largest value at any corner: no other can hold an extreme that is farther out.
+    """
+    low, high = bounds_of_tets(field)
+    if tolerance is not None:
+        corners = tabulated(field, np.eye(4)).reshape(-1, *field.shape)
+        beyond = (low < corners.min(axis=0) - tolerance) | (high > corners.max(axis=0) + tolerance)
+        tets = np.flatnonzero(beyond.reshape(len(low), -1).any(axis=1))
+        local = field.on_tets(tets)
+        low[tets], high[tets] = bernstein.bounds(local, field.degree, 3, tolerance)
+    return low.min(axis=0), high.max(axis=0)
 
 
 def size(field: TetPolynomials) -> int:

@@ -14,6 +14,7 @@ from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.evaluation import Outside
 from bezsoma.mesh.functions import Function
+from bezsoma.mesh.subdivision import Subdivision, subdivision
 from bezsoma.mesh.surface_field import SurfaceField
 from bezsoma.mesh.tets import TetMesh
 
@@ -136,6 +137,18 @@ class Field:
             raise InputError(f"degree {self.degree} cannot be lowered to {degree} without loss")
         return Field(net, net.elevated(self.controls, self.net))
 
+    def subdivided(self, into: Subdivision | None = None) -> Field:
+        """The same polynomials on a finer mesh: every tet cut in eight, or as `into` says.
+
+        Give the same `subdivision(mesh)` for several fields that are to share the finer mesh.
+        Neighbours agree about their shared controls up to rounding; one of them is kept.
+        """
+        into = subdivision(self.mesh) if into is None else into
+        net = ControlNet(into.fine, self.degree)
+        controls = np.empty((net.count, *self.shape))
+        controls[net.of_tet] = into.nets(self)
+        return Field(net, controls)
+
     def on_surface(self, place: str | Ints | None = None) -> SurfaceField:
         """The field on a named surface, on facets given as (f, 3), or on the whole boundary."""
         facets = self.mesh.boundary if place is None else place
@@ -143,13 +156,23 @@ class Field:
         numbers = self.net.of_facets(facets)
         return SurfaceField(self.mesh, facets, self.degree, numbers, self.controls[numbers])
 
-    def bounds(self) -> tuple[Floats, Floats]:
+    def bounds(self, tolerance: float | None = None) -> tuple[Floats, Floats]:
         """A lower and an upper bound (...) of the values, component by component.
 
-        A Bernstein polynomial stays within the convex hull of its controls, so the least and the
-        largest control enclose it; elevation brings them closer.
+        Without a tolerance the least and the largest control, which enclose the field since a
+        Bernstein polynomial stays within the convex hull of its controls; else `bounds_of_tets`
+        brings them that close to the true extremes.
         """
-        return self.controls.min(axis=0), self.controls.max(axis=0)
+        return evaluation.bounds(self, tolerance)
+
+    def bounds_of_tets(self, tolerance: float | None = None) -> tuple[Floats, Floats]:
+        """A lower and an upper bound (t, ...) of the values on every tet, component by component.
+
+        Args:
+            tolerance: how far, at most, a bound may be from the true extreme, in the value's unit;
+                reached by subdividing where it matters. Without it the controls are the bounds.
+        """
+        return evaluation.bounds_of_tets(self, tolerance)
 
     def integral(self) -> Floats:
         """The integral over the mesh (...), value times mm3, in closed form."""

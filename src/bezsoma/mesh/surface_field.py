@@ -37,6 +37,16 @@ class SurfaceField:
         return self.controls.shape[2:]
 
     @property
+    def displacement(self) -> Floats:
+        """The controls (f, m2, 3) in mm, once it is seen that they can move points."""
+        if self.shape != (3,):
+            raise InputError(
+                f"a field with values of shape {self.shape} does not move points; "
+                "a displacement has the shape (3,)"
+            )
+        return self.controls
+
+    @cached_property
     def corners(self) -> Floats:
         """The corners of each facet (f, 3, 3) in mm."""
         return self.mesh.points[self.facets]
@@ -48,10 +58,12 @@ class SurfaceField:
 
     @cached_property
     def turns(self) -> Floats:
-        """+1 where the facet's ascending vertices turn counterclockwise seen from outside (f,)."""
-        a, b, c = (self.corners[:, i] for i in range(3))
-        outward = np.einsum("fd,fd->f", cross(b - a, c - a), self.mesh.normals(self.facets))
-        return np.where(outward > 0, 1.0, -1.0)
+        """+1 where the facet's ascending vertices turn counterclockwise seen from outside (f,).
+
+        Between two tets, outside is where the one with the higher number lies.
+        """
+        turned = self.mesh.outward(self.facets)[:, 1] != self.facets[:, 1]
+        return np.where(turned, -1.0, 1.0)
 
     def at_bary(self, bary: Floats) -> Floats:
         """The values (f, b, ...) at the same barycentric points (b, 3) of every facet."""
@@ -62,10 +74,17 @@ class SurfaceField:
         places: Floats = np.matmul(np.asarray(bary, dtype=np.float64), self.corners)
         return places
 
+    def net(self, scale: float = 1.0) -> Floats:
+        """The surface moved by the field, a displacement, as Bezier triangles: controls (f, m2, 3).
+
+        In mm. The flat facet has its controls at the domain points and the displacement adds its
+        own, so the moved surface has the degree of the displacement, exactly.
+        """
+        return self.positions + scale * self.displacement
+
     def displaced(self, bary: Floats, scale: float = 1.0) -> Floats:
         """The places (f, b, 3) in mm moved by the field, a displacement, times a scale."""
-        self._displacement()
-        return self.places(bary) + scale * self.at_bary(bary)
+        return self.places(bary) + scale * _evaluated(self.degree, bary, self.displacement)
 
     def normals(self, bary: Floats, scale: float = 1.0) -> Floats:
         """The unit outward normals (f, b, 3) of the displaced surface; scale 0: of the facets.
@@ -73,17 +92,8 @@ class SurfaceField:
         The surface x + u is a Bezier triangle; its tangents are the differences of its controls.
         Beware: between facets they jump, as the surface is continuous and no smoother.
         """
-        self._displacement()
-        net = self.positions + scale * self.controls
-        shifts = bernstein.shifts(self.degree, 2)
-        tangents = [
-            _evaluated(self.degree - 1, bary, net[:, shifts[:, i]] - net[:, shifts[:, 0]])
-            for i in (1, 2)
-        ]
-        normal = cross(*tangents) * self.turns[:, None, None]
-        length = np.linalg.norm(normal, axis=2, keepdims=True)
-        unit: Floats = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-        return unit
+        net = self.net(scale)
+        return patch_normals(self.degree, net, bary) * self.turns[:, None, None]
 
     def integral(self) -> Floats:
         """The integral over the undeformed surface (...), value times mm2.
@@ -93,12 +103,21 @@ class SurfaceField:
         areas = self.mesh.areas(self.facets)
         return np.asarray(np.einsum("f,f...->...", areas, self.controls.mean(axis=1)))
 
-    def _displacement(self) -> None:
-        if self.shape != (3,):
-            raise InputError(
-                f"a field with values of shape {self.shape} does not move points; "
-                "a displacement has the shape (3,)"
-            )
+
+def patch_normals(degree: int, net: Floats, bary: Floats) -> Floats:
+    """Unit normals (f, b, 3) of Bezier triangles with the controls (f, m2, 3), degree at least 1.
+
+    The vector product of the tangents, which are n times the differences of neighbouring controls;
+    zero where the patch is crushed. It points to where the vertices turn counterclockwise.
+    """
+    shifts = bernstein.shifts(degree, 2)
+    tangents = [
+        _evaluated(degree - 1, bary, net[:, shifts[:, i]] - net[:, shifts[:, 0]]) for i in (1, 2)
+    ]
+    normal = cross(*tangents)
+    length = np.linalg.norm(normal, axis=2, keepdims=True)
+    unit: Floats = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+    return unit
 
 
 def _evaluated(degree: int, bary: Floats, controls: Floats) -> Floats:

@@ -66,6 +66,8 @@ class TetMesh:
     """Vertex numbers (k,) of each named vertex place, ascending."""
     dropped: int
     """How many of the points given belonged to no tet."""
+    face_count: int
+    """How many faces there are; `all_faces` finds them."""
     _part: Int32s
 
     def __init__(
@@ -93,6 +95,7 @@ class TetMesh:
             regions=names,
             dropped=int((~used).sum()),
         )
+        self._hold(face_count=len(self.all_faces))
         pairs, sound = _core.neighbours(self.faces_of_tet, len(self.all_faces), signs)
         self._hold(tets_of_face=frozen(pairs), _part=_core.components(pairs, len(rows)))
         if not sound:
@@ -149,6 +152,15 @@ class TetMesh:
         for part in slices(len(self.tets)):
             found[part] = np.abs(determinants(self.points[self.tets[part]])) / 6.0
         return frozen(found)
+
+    @property
+    def mean_size(self) -> float:
+        """The edge, mm, of the cube that is as large as a tet on the average; volumes not kept."""
+        kept = "volumes" in self.__dict__
+        size = float(np.cbrt(self.volumes.mean()))
+        if not kept:
+            del self.__dict__["volumes"]
+        return size
 
     @cached_property
     def gradients(self) -> Floats:
