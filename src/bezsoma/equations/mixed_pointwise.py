@@ -69,7 +69,7 @@ class MixedPointwise:
     def forces(self, u: Floats, p: Floats) -> tuple[Floats, Floats]:
         """The internal forces and the volumes out of balance; raises Inadmissible."""
         f, g = np.zeros_like(u), np.zeros_like(p)
-        for law, tets, H, pressure in self._points(u, p):
+        for law, tets, H, pressure in self.points(u, p):
             if law.finite:
                 self.shape.right_side_out(H, tets)
             with np.errstate(all="ignore"):
@@ -86,7 +86,7 @@ class MixedPointwise:
     def energy(self, u: Floats, p: Floats) -> float:
         """The stored energy at u and p, N mm."""
         weights, total = self.shape.rule[1], 0.0
-        for law, tets, H, pressure in self._points(u, p):
+        for law, tets, H, pressure in self.points(u, p):
             W = law.mixed_energy(H, pressure)
             total += float(np.einsum("tq,q,t->", W, weights, self.net.mesh.volumes[tets]))
         return total
@@ -95,7 +95,7 @@ class MixedPointwise:
         """The tangent (3c + cp, 3c + cp) at u and p as a sparse matrix."""
         K: list[list[Any]] = [[[], []], [[], []]]
         wide, cp = 3 * self.net.count, self.pressure_net.count
-        for law, tets, H, pressure in self._points(u, p, 24):
+        for law, tets, H, pressure in self.points(u, p, 24):
             of_u = (3 * self.net.of_tet[tets][:, :, None] + np.arange(3)).reshape(len(tets), -1)
             of_p = self.pressure_net.of_tet[tets]
             for i, j, block in self._blocks(law, tets, H, pressure):
@@ -134,7 +134,7 @@ class MixedPointwise:
         yield 1, 0, B.reshape(t, -1, 3 * m)
         yield 1, 1, (N.T * (dc * scale)[:, None]) @ N
 
-    def _points(
+    def points(
         self, u: Floats, p: Floats, part: int = 1
     ) -> Iterator[tuple[MixedLaw, Ints, Floats, Floats]]:
         """The laws, some tets of their regions, H (t, q, 3, 3) and p (t, q) at their points."""
@@ -168,7 +168,7 @@ class MixedArrayTangent:
     def apply(self, du: Floats, dp: Floats) -> tuple[Floats, Floats]:
         """The changes (c, 3) N and (cp,) mm3 for changes du (c, 3) mm and dp (cp,) MPa."""
         f, g = np.zeros_like(du), np.zeros_like(dp)
-        at, by = self.of._points(self.u, self.p), self.of._points(du, dp)
+        at, by = self.of.points(self.u, self.p), self.of.points(du, dp)
         for (law, tets, H, p), (_, _, dH, d) in zip(at, by, strict=True):
             dP, dc = law.mixed_derivative(H, p, dH, d)
             self.of.shape.add(f, tets, dP)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import MappingProxyType
 from typing import Any
 
@@ -68,6 +68,13 @@ class Body:
         joins_checked(self.joins, self.supports, self.mesh)
         object.__setattr__(self, "pressure_degree", _pressure_degree(self))
         _form_checked(self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle keeps; functions among supports, loads and laws have to be importable."""
+        stated = {each.name: getattr(self, each.name) for each in fields(self)}
+        if isinstance(self.materials, Mapping):
+            stated["materials"] = dict(self.materials)
+        return Body, tuple(stated.values())
 
     @property
     def mixed(self) -> bool:

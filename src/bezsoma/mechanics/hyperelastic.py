@@ -212,8 +212,8 @@ class Ogden:
 
 
 def _list(given: Sequence[float], what: str) -> tuple[float, ...]:
-    if isinstance(given, int | float):
-        given = [given]
+    if isinstance(given, int | float) or (isinstance(given, np.ndarray) and given.ndim == 0):
+        given = [float(given)]
     if isinstance(given, str) or not hasattr(given, "__iter__"):
         raise InputError(f"{what} is {given!r}; it must be a list of numbers")
     return tuple(number(each, what) for each in given)
@@ -302,25 +302,11 @@ class Guccione:
             )
 
     @cached_property
-    def frame(self) -> Floats:
-        """The unit vectors f, s, n (3, 3), right-handed, one a row.
-
-        >>> frame = Guccione(1, 8, 2, 4, 1e3, (3, 4, 0)).frame
-        >>> bool(np.allclose(frame @ frame.T, np.eye(3)) and np.allclose(frame[0], [0.6, 0.8, 0]))
-        True
-        """
-        f = self.fibre / np.abs(self.fibre).max()
-        f = f / np.sqrt((f**2).sum())
-        across = np.eye(3)[int(np.argmin(np.abs(f)))]
-        s = across - (across @ f) * f
-        s /= np.sqrt((s**2).sum())
-        return np.stack([f, s, np.cross(f, s)])
-
-    @cached_property
     def core(self) -> _core.Law:
         """The core's law."""
-        numbers = [self.kappa, self.C, self.bf, self.bt, self.bfs, *self.frame.ravel()]
-        return _core.Law("guccione", numbers)
+        f = self.fibre / np.abs(self.fibre).max()
+        f = f / np.sqrt((f**2).sum())
+        return _core.Law("guccione", [self.kappa, self.C, self.bf, self.bt, self.bfs, *f])
 
     stress = compiled.stress
     derivative = compiled.derivative

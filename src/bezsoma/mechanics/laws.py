@@ -282,6 +282,16 @@ def _answers(law: FunctionLaw) -> None:
             f"the derivative of FunctionLaw cannot be taken ({error}); give derivative=a function "
             "of (H, dH), or 'differences'"
         ) from error
+    if np.shape(slope) != rest.shape:
+        raise InputError(
+            f"the derivative of FunctionLaw answers with shape {np.shape(slope)} for H and dH of "
+            "shape (2, 3, 3); it must give one 3 x 3 change of stress for each"
+        )
+    if law.stored is not None and np.shape(law.stored(rest)) != (2,):
+        raise InputError(
+            f"the energy of FunctionLaw answers with shape {np.shape(law.stored(rest))} for H of "
+            "shape (2, 3, 3); it must give one number for each H, shape (2,)"
+        )
     if not (np.isfinite(slope).all() and np.any(slope)):
         raise InputError(
             "the derivative of FunctionLaw at rest is zero or not finite: a complex step needs a "

@@ -46,6 +46,17 @@ class Given:
         return _answer(self.function(points.copy()), points, self)
 
 
+@dataclass(frozen=True, eq=False)
+class _Constant:
+    """The same numbers (k,) at every point; a class, which can be pickled as no lambda can."""
+
+    numbers: Floats
+
+    def __call__(self, points: Floats) -> Floats:
+        """The numbers (p, k)."""
+        return np.tile(self.numbers, (len(points), 1))
+
+
 def given(value: Any, size: int, what: str) -> Given:
     """The checked form of a value with `size` components; `what` names it in messages.
 
@@ -64,7 +75,7 @@ def given(value: Any, size: int, what: str) -> Given:
     if callable(value) and not isinstance(value, type):
         return Given(value, size, None, what)
     constant = numbers(value, (size,) if size > 1 else (), what).reshape(size)
-    return Given(lambda points: np.tile(constant, (len(points), 1)), size, 0, what)
+    return Given(_Constant(constant), size, 0, what)
 
 
 def as_called(kind: str, *places: str, **stated: Any) -> str:

@@ -7,19 +7,25 @@ import numpy as np
 
 from bezsoma.arrays import Floats
 from bezsoma.errors import NotConverged
-from bezsoma.solvers.krylov import Operator, dot, length
+from bezsoma.solvers.krylov import ROUGH, Operator, dot, length
 
 RESTARTS = 10
 
 
 def stabilised(
-    apply: Operator, precondition: Operator, b: Floats, rtol: float, most: int
+    apply: Operator,
+    precondition: Operator,
+    b: Floats,
+    rtol: float,
+    most: int,
+    rough: Operator | None = None,
 ) -> tuple[Floats, int]:
     """x with |b - A x| <= rtol |b|, and how many times A was applied, two an iteration.
 
     H. A. van der Vorst, SIAM J. Sci. Stat. Comput. 13 (1992), doi:10.1137/0913035, preconditioned
     from the right, so that the residual is the true one. Where the shadow residual has turned
-    orthogonal the iteration starts anew. Two vectors more than conjugate gradients keep.
+    orthogonal the iteration starts anew. Two vectors more than conjugate gradients keep. `rough`
+    serves as it does there: see `conjugate_gradients`.
 
     >>> A = np.array([[4.0, 1, 0], [-1, 3, 1], [0, -2, 5]])
     >>> x, _ = stabilised(lambda x: A @ x, lambda r: r / 4, np.ones((3, 1)), 1e-14, 50)
@@ -30,7 +36,8 @@ def stabilised(
     x, r = np.zeros_like(b), b.copy()
     applied = 0
     for _ in range(RESTARTS):
-        applied += _run(apply, precondition, x, r, rtol * whole, most - applied)
+        goal = max(rtol * whole, ROUGH * length(r)) if rough else rtol * whole
+        applied += _run(rough or apply, precondition, x, r, goal, most - applied)
         r = b - apply(x)
         applied += 1
         size = length(r)

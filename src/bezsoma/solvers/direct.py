@@ -7,12 +7,12 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.sparse import csc_array, diags_array
-from scipy.sparse.linalg import splu
 
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.assembled import BlockMatrix
 from bezsoma.equations.displacement import Equations
 from bezsoma.errors import InputError
+from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.krylov import Report, length
 
 DIRECT_UP_TO = 3000
@@ -23,17 +23,22 @@ LARGEST = 2**31 - 1
 
 
 def direct(
-    equations: Equations, matrix: BlockMatrix, b: Floats, report: Report | None = None
+    equations: Equations,
+    matrix: BlockMatrix,
+    b: Floats,
+    report: Report | None = None,
+    waiting: Waiting | None = None,
 ) -> tuple[Floats, list[float]]:
     """The free displacement x (c, 3) with K x = b, and the relative residual of each refinement.
 
     The free part is scaled to a unit diagonal, S K S with S = diag(K)^-1/2, and factored by
     SuperLU with the order of K + K^T (minimum degree) and pivots on the diagonal, which a
     positive definite matrix allows. Then x is refined, x + S (S K S)^-1 S (b - K x), for as long as
-    that halves the residual at least; the better of the last two is taken.
+    that halves the residual at least; the better of the last two is taken. Ctrl-C is heard while
+    SuperLU factors: see `factored`, which says what `waiting` is.
     """
     free = np.flatnonzero(~equations.held.ravel())
-    solve = _factored(matrix, free)
+    solve = _solver(matrix, free, waiting)
     whole = length(b)
     x, r, history = np.zeros_like(b), b, [1.0]
     for step in range(1, REFINEMENTS + 1):
@@ -53,7 +58,7 @@ def direct(
     return x, history
 
 
-def _factored(matrix: BlockMatrix, free: Ints) -> Callable[[Floats], Floats]:
+def _solver(matrix: BlockMatrix, free: Ints, waiting: Waiting | None) -> Callable[[Floats], Floats]:
     if matrix.blocks.size > LARGEST:
         raise InputError(
             f"the matrix has {matrix.blocks.size} entries, more than the direct solver can count "
@@ -63,8 +68,9 @@ def _factored(matrix: BlockMatrix, free: Ints) -> Callable[[Floats], Floats]:
     part = matrix.scipy().tocsr()[free][:, free]
     S = diags_array(scale)
     try:
-        factors = splu(
+        solve = factored(
             csc_array(S @ part @ S),
+            waiting,
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
@@ -74,4 +80,4 @@ def _factored(matrix: BlockMatrix, free: Ints) -> Callable[[Floats], Floats]:
             f"the factors of {len(free)} unknowns are more than the direct solver can hold or "
             "count; use solver='multigrid'"
         ) from full
-    return lambda r: scale * factors.solve(scale * r)
+    return lambda r: scale * solve(scale * r)

@@ -65,6 +65,10 @@ def _cycle(
             H[: j + 1, j] += along
             w -= np.einsum("i,in->n", along, basis[: j + 1])
         H[j + 1, j] = _length(w)
+        if not np.isfinite(H[: j + 2, j]).all():
+            raise NotConverged(
+                "GMRES met a product with the tangent, or its square, beyond the range of numbers"
+            )
         small, b = H[: j + 2, : j + 1], right[: j + 2]
         y = np.asarray(np.linalg.lstsq(small, b, rcond=None)[0], dtype=np.float64)
         if H[j + 1, j] <= 1e-14 * size or np.linalg.norm(b - small @ y) <= target:

@@ -26,6 +26,8 @@ LEAST_PIVOT = 1e-6
 LARGEST_SHIFT = 1e3
 MOST_ITERATIONS = 5000
 RESTARTS = 3
+ROUGH = 1e-4
+"""How far the residual is followed by rough products before it is formed anew."""
 
 Operator = Callable[[Floats], Floats]
 Report = Callable[[int, float], None]
@@ -118,17 +120,28 @@ def conjugate_gradients(
     rtol: float,
     most: int = MOST_ITERATIONS,
     report: Report | None = None,
+    start: Floats | None = None,
+    rough: Operator | None = None,
 ) -> tuple[Floats, list[float]]:
     """x with |b - A x| <= rtol |b|, and |r| / |b| after each iteration, the first before any.
+
+    From `start`, or from zero. |b| is the residual at zero in either case.
 
     M. R. Hestenes and E. Stiefel, J. Res. NBS 49 (1952), doi:10.6028/jres.049.044. The residual
     that the recursion carries drifts from the true one by rounding, so the true one decides: where
     it has not come down with it the iteration starts anew from there, `RESTARTS` times at most.
+
+    `rough` applies A to six digits or so. Then it serves the recursion, which is believed for as
+    long as the residual comes down to `ROUGH` of itself, and `apply` the true residual: as a linear
+    system is refined, so that x is as good as without.
     """
     whole = length(b)
-    x, r, history = np.zeros_like(b), b.copy(), [1.0]
-    for _ in range(RESTARTS + 1):
-        _iterate(apply, precondition, x, r, whole, rtol, most, history, report)
+    x, r = (np.zeros_like(b), b.copy()) if start is None else (start.copy(), b - apply(start))
+    history = [length(r) / whole]
+    runs = RESTARTS + 1 + (math.ceil(math.log(rtol) / math.log(ROUGH)) if rough else 0)
+    for _ in range(runs):
+        goal = max(rtol, ROUGH * history[-1]) if rough else rtol
+        _iterate(rough or apply, precondition, x, r, whole, goal, most, history, report)
         r = b - apply(x)
         before, history[-1] = history[-1], length(r) / whole
         if history[-1] <= rtol:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from bezsoma.arrays import Floats
-from bezsoma.errors import InputError
+from bezsoma.errors import Inadmissible, InputError
 from bezsoma.solvers.newton import Iteration, Rule, StepFailed, System, TangentFailed, equilibrium
 
 SHORTEST = 2.0**-10
@@ -54,7 +54,7 @@ def steps_checked(steps: Any) -> tuple[float, ...] | None:
             )
         return tuple((i + 1) / int(steps) for i in range(int(steps)))
     fractions = _fractions(steps)
-    if not fractions or fractions[-1] != 1 or any(a >= b for a, b in _pairs(fractions)):
+    if not fractions or fractions[-1] != 1 or not all(a < b for a, b in _pairs(fractions)):
         raise InputError(
             f"steps = {steps!r}: give how many, or the fractions of the load in ascending order, "
             "above 0 and ending with 1, as [0.1, 0.4, 1]; 'auto' finds them"
@@ -74,13 +74,22 @@ def _pairs(fractions: Sequence[float]) -> zip[tuple[float, float]]:
 
 
 def loaded(
-    system: System, x: Floats, steps: tuple[float, ...] | None, rule: Rule, tell: Told
+    system: System,
+    x: Floats,
+    steps: tuple[float, ...] | None,
+    rule: Rule,
+    tell: Told,
+    start: Floats | None = None,
 ) -> Reached:
     """The state under the whole load, from x (n,) at rest, or the last that could be reached.
 
     Given steps are taken as they are. Without them the whole load is tried first; a step that
     fails is halved, and one that took few iterations lets the next be twice as long. Halving ends
     early where the law has lost its ellipticity and its tangent fails: there it leads nowhere.
+
+    Where there is a `start` (n,), a state near that under the whole load, the whole is first tried
+    from there, whatever the steps; if that fails, the next iteration says so. So it does where
+    the first step fails from what `system.near` gives, and rest is begun from.
     """
     path: list[Iteration] = []
     failed: list[str] = []
@@ -91,27 +100,49 @@ def loaded(
         path.append(iteration)
         tell(iteration)
 
-    fraction, length, number = 0.0, 1.0, 1
+    if start is not None:
+        try:
+            begin = np.where(system.held, system.given(1.0), start)
+            return Reached(equilibrium(system, begin, 1.0, 1, rule, record), 1.0, tuple(path))
+        except (StepFailed, Inadmissible) as failure:
+            failed[:] = [f"the earlier solution was no start, so from rest: {failure}"]
+
+    def found(target: float) -> Floats:
+        near = system.near(target) if fraction == 0 else None
+        if near is not None:
+            try:
+                return equilibrium(system, x, target, number, rule, record, near)
+            except StepFailed as failure:
+                failed[:] = [f"the answer of degree 1 was no start, so from rest: {failure}"]
+        return equilibrium(system, x, target, number, rule, record)
+
+    fraction, length, number, refused = 0.0, 1.0, 1, ""
     while fraction < 1:
         target = _next(fraction, length, steps)
         before = len(path)
         try:
-            x = equilibrium(system, x, target, number, rule, record)
+            x = found(target)
         except StepFailed as failure:
             length /= 2
+            refused = failure.refused or refused
             failed[:] = [f"{100 * target:.4g} % of the load was tried in vain: {failure}"]
             last = steps is not None or length < SHORTEST
             tired = length < DOUBTED and isinstance(failure, TangentFailed)
             doubt = system.doubt(x) if last or tired else ""
             if last or doubt:
-                why = f"{failure}; {doubt}" if doubt else str(failure)
-                return Reached(x, fraction, tuple(path), target, why)
+                return Reached(x, fraction, tuple(path), target, _why(str(failure), refused, doubt))
         else:
             fraction = target
             number += 1
             if len(path) - before <= FEW:
                 length *= 2
     return Reached(x, 1.0, tuple(path))
+
+
+def _why(failure: str, refused: str, doubt: str) -> str:
+    """What failed at last, the last state that could not be, and what the law has lost."""
+    new = refused if refused not in failure else ""
+    return "; ".join(part for part in (failure, new and f"refused was {new}", doubt) if part)
 
 
 def _next(fraction: float, length: float, steps: tuple[float, ...] | None) -> float:

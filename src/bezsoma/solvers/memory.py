@@ -4,80 +4,169 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from math import comb
 from pathlib import Path
 
 from bezsoma.errors import InputError
-from bezsoma.mesh.control_net import ControlNet
+from bezsoma.mechanics.body import Body
+from bezsoma.mesh.tets import TetMesh
+from bezsoma.solvers.gmres import KEPT
+
+GROUPS = Path("/sys/fs/cgroup")
+OWN_GROUPS = Path("/proc/self/cgroup")
 
 
-def estimate(net: ControlNet, solver: str) -> int:
-    """The bytes that a solver will take for a net, besides the mesh and the net: from counts.
+def estimate(
+    mesh: TetMesh,
+    degree: int,
+    solver: str,
+    pressure_degree: int | None = None,
+    linear: bool = True,
+) -> int:
+    """The bytes that a solve will take besides the mesh: from counts, before anything is numbered.
 
-    The counts are exact, their factors were measured (benchmarks/growth.py): right within a
-    factor of two. A refusal that saves a machine from swapping needs no more.
+    The solvers are those of `solve`, but "auto". The factors were measured (benchmarks/growth.py,
+    tests/laws/test_memory.py): right within a factor of two. A refusal that saves a machine from
+    swapping needs no more. What no count knows is the fill of a direct solver on a plate or a bar,
+    which is less.
 
     A cube at degree 3 has some 30 controls more an edge entity than at degree 2, yet without a
     matrix it takes less than twice the memory:
 
     >>> from bezsoma.mesh.solids import block
-    >>> two, three = (ControlNet(block(cells=8), n) for n in (2, 3))
-    >>> three.count > 3 * two.count
+    >>> cube = block(cells=8)
+    >>> Counts(cube, 3).controls > 3 * Counts(cube, 2).controls
     True
-    >>> estimate(three, "multigrid") < 2 * estimate(two, "multigrid")
+    >>> estimate(cube, 3, "multigrid") < 2 * estimate(cube, 2, "multigrid")
     True
     """
-    n, mesh = net.degree, net.mesh
-    if solver != "multigrid":
-        matrix = 72 * _blocks(net)
-        if solver == "cg":
-            return 2 * matrix + 400 * net.count
-        # The factors of a cube hold about c^(5/3) numbers in SuperLU's order, whatever the degree
-        # (1000 to 36000 unknowns were measured); those of a bar or a plate fewer.
-        return 3 * matrix + 4_000_000 + int(22 * (3 * net.count) ** (5 / 3))
-    tets = len(mesh.tets) * (120 if n == 1 else 400)
-    vectors = 10 * 24 * net.count
-    packed = 0
-    for dim, starts in enumerate(net.starts):
-        rows = 3 * comb(n - 1, dim)
-        packed += 4 * len(starts) * (rows * (rows + 1) // 2 + 2 * rows)
-    return tets + vectors + packed + 1500 * len(mesh.points)
+    net = Counts(mesh, degree)
+    pressures = Counts(mesh, pressure_degree) if pressure_degree else None
+    bytes_of_nets = net.numbering + (pressures.numbering if pressures else 0)
+    if solver in ("direct", "cg"):
+        return bytes_of_nets + _with_a_matrix(net, pressures, solver, linear)
+    return bytes_of_nets + _without(net, pressures, linear)
+
+
+@dataclass(frozen=True)
+class Counts:
+    """What a control net of some degree will have, known before it is numbered.
+
+    Edges follow from Euler's formula; a tunnel, a cavity or a part more shifts them by a handful.
+
+    >>> from bezsoma.mesh.control_net import ControlNet
+    >>> from bezsoma.mesh.solids import block
+    >>> mesh = block(cells=3)
+    >>> all(Counts(mesh, n).controls == ControlNet(mesh, n).count for n in range(1, 11))
+    True
+    """
+
+    mesh: TetMesh
+    degree: int
+
+    @property
+    def entities(self) -> tuple[int, int, int, int]:
+        """How many vertices, edges, faces and tets there are."""
+        v, f, t = len(self.mesh.points), self.mesh.face_count, len(self.mesh.tets)
+        return v, v + f - t - 1, f, t
+
+    @property
+    def inside(self) -> tuple[int, int, int, int]:
+        """The controls inside one of each."""
+        n = self.degree - 1
+        return 1, n, comb(n, 2), comb(n, 3)
+
+    @cached_property
+    def controls(self) -> int:
+        """The controls of all."""
+        return sum(e * i for e, i in zip(self.entities, self.inside, strict=True))
+
+    @property
+    def numbering(self) -> int:
+        """The bytes of the numbering: where controls begin, and the edges and faces of tets."""
+        _, e, f, t = self.entities
+        starts = sum(8 * e for e, i in zip(self.entities, self.inside, strict=True) if i)
+        edges = (8 * e + 24 * t) if self.degree > 1 else 0
+        faces = (12 * f + 16 * t) if self.degree > 2 else 0
+        return starts + edges + faces + 8 * t
+
+    @property
+    def blocks(self) -> int:
+        """About how many 3x3 blocks a matrix has: the controls of the tets around each control."""
+        n = self.degree
+        own = comb(n + 3, 3)
+        face = 2 * own - comb(n + 2, 2)
+        edge = 5 * (own - comb(n + 2, 2)) + n + 1
+        vertex = 24 * (own - comb(n + 2, 2)) // 2 + 1
+        meets = (max(vertex, 15), max(edge, 8), face, own)
+        counts = zip(self.entities, self.inside, meets, strict=True)
+        return sum(e * i * m for e, i, m in counts)
+
+    @property
+    def packed(self) -> int:
+        """The bytes of the inverses of the entities' blocks, in float32, and their answers."""
+        total = 0
+        for entities, inside in zip(self.entities, self.inside, strict=True):
+            rows = 3 * inside
+            total += 4 * entities * (rows * (rows + 1) // 2 + 2 * rows)
+        return total
+
+
+def _with_a_matrix(net: Counts, pressures: Counts | None, solver: str, linear: bool) -> int:
+    matrix, unknowns = 72 * net.blocks, 3 * net.controls
+    if solver == "cg":
+        return 2 * matrix + 400 * net.controls
+    if pressures:
+        matrix = matrix * 3 // 2
+        unknowns += pressures.controls
+    copies = 3 if linear else 8
+    # The factors of a cube hold about c^(5/3) numbers in SuperLU's order, whatever the degree
+    # (1000 to 36000 unknowns were measured); those of a bar or a plate fewer.
+    return copies * matrix + 4_000_000 + int(22 * unknowns ** (5 / 3))
+
+
+def _without(net: Counts, pressures: Counts | None, linear: bool) -> int:
+    vertices, _, _, tets = net.entities
+    of_tets = tets * (120 if net.degree == 1 else 400)
+    packed = net.packed if net.degree > 1 else 0
+    unknowns = 3 * net.controls + (pressures.controls if pressures else 0)
+    vectors = 10
+    if pressures:
+        of_tets += 200 * tets
+        vectors = 18 if linear else 2 * KEPT + 25
+    elif not linear:
+        of_tets += 300 * tets
+        vectors = 55
+    return of_tets + 8 * vectors * unknowns + packed + 1500 * vertices
 
 
 def available() -> int | None:
     """The bytes that may be taken without swapping; None where the system does not say."""
-    limits = [_kernel_says(), _group_allows()]
+    limits = [_kernel_says(), _groups_allow()]
     known = [limit for limit in limits if limit is not None]
     return min(known) if known else None
 
 
-def refuse_what_does_not_fit(net: ControlNet, solver: str, without: str = "multigrid") -> None:
+def refuse_what_does_not_fit(body: Body, solver: str, linear: bool = True) -> None:
     """Raise an InputError if a solver would need more memory than there is.
 
-    `without` names the one that needs no matrix. What laws that are not linear and a pressure take
-    on top is not counted: a fraction of the rest.
+    "auto" counts as what it takes for large bodies: for small ones it takes little in any case.
     """
-    needed, there = estimate(net, "multigrid" if solver == without else solver), available()
+    without = "saddle" if body.mixed and linear else "multigrid"
+    chosen = without if solver == "auto" else solver
+    needed = estimate(body.mesh, body.degree, chosen, body.pressure_degree, linear)
+    there = available()
     if there is not None and needed > there:
+        unknowns = 3 * Counts(body.mesh, body.degree).controls
         raise InputError(
-            f"{3 * net.count} unknowns of degree {net.degree} by {solver!r} take about "
+            f"{unknowns} unknowns of degree {body.degree} by {chosen!r} take about "
             f"{needed / 2**30:.1f} GiB, and {there / 2**30:.1f} GiB are free; take a lower degree "
             "or a coarser mesh"
-            + ("" if solver == without else f", or solver={without!r}, which needs no matrix")
+            + ("" if chosen == without else f", or solver={without!r}, which needs no matrix")
         )
-
-
-def _blocks(net: ControlNet) -> int:
-    """About how many 3x3 blocks a matrix has: the controls of the tets around each control."""
-    n, mesh = net.degree, net.mesh
-    inside = [comb(n - 1, dim) for dim in range(4)]
-    own = comb(n + 3, 3)
-    face = 2 * own - comb(n + 2, 2)
-    edge = 5 * (own - comb(n + 2, 2)) + n + 1
-    vertex = 24 * (own - comb(n + 2, 2)) // 2 + 1
-    meets = (max(vertex, 15), max(edge, 8), face, own)
-    entities = (len(mesh.points), len(mesh.all_edges), len(mesh.all_faces), len(mesh.tets))
-    return sum(e * i * m for e, i, m in zip(entities, inside, meets, strict=True))
 
 
 def _kernel_says() -> int | None:
@@ -93,12 +182,48 @@ def _kernel_says() -> int | None:
         return None
 
 
-def _group_allows() -> int | None:
-    """What a control group (a container) leaves of its limit."""
-    group = Path("/sys/fs/cgroup")
+def _groups_allow() -> int | None:
+    """The least that the control groups (of a container, of a batch job) leave of their limits."""
+    left = [room for folder in _groups() if (room := _room(folder)) is not None]
+    return min(left, default=None)
+
+
+def _groups() -> Iterator[Path]:
+    """The folders of the groups that this process is in, of either version, and of those above."""
+    yield from (GROUPS, GROUPS / "memory")
     try:
-        limit = (group / "memory.max").read_text().strip()
-        used = int((group / "memory.current").read_text())
-    except (OSError, ValueError):
-        return None
-    return None if limit == "max" else max(int(limit) - used, 0)
+        lines = OWN_GROUPS.read_text().splitlines()
+    except OSError:
+        return
+    for line in lines:
+        _, kinds, path = line.split(":", 2)
+        if kinds in ("", "memory"):
+            root = GROUPS / kinds
+            own = root / path.lstrip("/")
+            yield from (folder for folder in (own, *own.parents) if root in folder.parents)
+
+
+_FILES = (
+    ("memory.max", "memory.current", "inactive_file"),
+    ("memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"),
+)
+"""Of version 2 and 1: the limit, what is used, and what of it are pages of files to be dropped."""
+
+
+def _room(folder: Path) -> int | None:
+    """What one group leaves of its limit; None where it has none."""
+    for limit, used, dropped in _FILES:
+        try:
+            most, taken = int((folder / limit).read_text()), int((folder / used).read_text())
+        except (OSError, ValueError):  # not there, or "max"
+            continue
+        return max(most - taken + _counted(folder / "memory.stat", dropped), 0)
+    return None
+
+
+def _counted(table: Path, name: str) -> int:
+    try:
+        rows = (line.split() for line in table.read_text().splitlines())
+        return next((int(row[1]) for row in rows if row[0] == name), 0)
+    except (OSError, ValueError, IndexError):
+        return 0

@@ -31,6 +31,7 @@ from bezsoma.solvers.krylov import Report
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.saddle_direct import direct_saddle
 from bezsoma.solvers.solution import Solution, resultants
+from bezsoma.solvers.start import State, first_displacement, first_pressure
 from bezsoma.solvers.watch import Watch, in_range
 
 MIXED_SOLVERS = ("auto", "direct", "saddle")
@@ -40,10 +41,13 @@ CHEAPER_FROM = {2: 0.45, 3: 0.49, 4: 0.499, 5: 0.499, 6: 0.499}
 """Poisson's ratio, of those measured, from which the mixed form is the cheaper one, by degree."""
 
 
-def mixed_solution(body: Body, solver: str, rtol: float, threads: int, watch: Watch) -> Solution:
+def mixed_solution(
+    body: Body, solver: str, rtol: float, threads: int, watch: Watch, start: State | None = None
+) -> Solution:
     """Displacement and pressure of a body that has one: see `solve`."""
     chosen, why, equations, locked = _equations(body, solver, threads, watch)
-    u, p, method, history = _solved(equations, chosen, why, rtol, watch)
+    begin = None if start is None or chosen == "direct" else _begin(start, equations)
+    u, p, method, history = _solved(equations, begin, chosen, why, rtol, watch)
     with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
         displacement = Field(equations.net, frozen(u))
         pressure = _pressure(body, equations.pressure_net, frozen(p))
@@ -55,18 +59,18 @@ def mixed_solution(body: Body, solver: str, rtol: float, threads: int, watch: Wa
     return Solution(
         body,
         displacement,
-        supports,
-        energy,
-        swelling,
-        method,
-        tuple(history),
-        max(len(history) - 1, 0),
-        history[-1] if history else 0.0,
-        equations.free,
-        watch.timings,
-        pressure,
-        _level(len(equations.modes)),
-        locked,
+        reactions=supports,
+        energy=energy,
+        volume_change=swelling,
+        method=method,
+        history=tuple(history),
+        iterations=max(len(history) - 1, 0),
+        residual=history[-1] if history else 0.0,
+        free=equations.free,
+        timings=watch.timings,
+        pressure=pressure,
+        level=_level(len(equations.modes)),
+        held_tets=locked,
     )
 
 
@@ -86,6 +90,8 @@ def _equations(
 ) -> tuple[str, str, MixedEquations, int]:
     assert body.pressure_degree is not None
     with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
+        _solver_checked(solver)
+        refuse_what_does_not_fit(body, solver)
         net = ControlNet(body.mesh, body.degree)
         pressures = pressure_net(body.mesh, body.pressure_degree, body.pressure_breaks)
         moduli = mixed_moduli(body)
@@ -97,8 +103,7 @@ def _equations(
         locked = refuse_undetermined(net, pressures, known.mask, soft, modes)
         refuse_flux(net, pressures, modes, soft, known.values)
     free = int(known.mask.size - known.mask.sum()) + pressures.count
-    chosen, why = mixed_choice(free, solver)
-    refuse_what_does_not_fit(net, chosen, without="saddle")
+    chosen, why = _choice(free, solver)
     with watch.stage("loads", f"{len(body.loads)} given"):
         loads = forces(body, net)
     with watch.stage("stiffness", f"{free} unknowns"):
@@ -109,6 +114,13 @@ def _equations(
     return chosen, why, equations, locked
 
 
+def _begin(start: State, equations: MixedEquations) -> tuple[Floats, Floats]:
+    """The first u (c, 3), with what is prescribed, and the first p (cp,)."""
+    u = first_displacement(start, equations.net)
+    p = first_pressure(start, equations.pressure_net, equations.net.mesh)
+    return np.where(equations.held, equations.given, u), p
+
+
 def _without_matrix(equations: MixedEquations, body: Body, threads: int) -> MixedFree:
     """The operator that takes the energy from gradients."""
     if isinstance(equations.operator, MixedFree):
@@ -117,7 +129,12 @@ def _without_matrix(equations: MixedEquations, body: Body, threads: int) -> Mixe
 
 
 def _solved(
-    equations: MixedEquations, chosen: str, why: str, rtol: float, watch: Watch
+    equations: MixedEquations,
+    begin: tuple[Floats, Floats] | None,
+    chosen: str,
+    why: str,
+    rtol: float,
+    watch: Watch,
 ) -> tuple[Floats, Floats, str, list[float]]:
     with watch.stage("solving", f"{chosen}: {why}"):
         zero = np.zeros(equations.pressure_net.count)
@@ -129,24 +146,44 @@ def _solved(
             return equations.given.copy(), zero, reason, []
         report = watch.iterations(rtol)
         if isinstance(equations.operator, MixedMatrix):
-            u, p, history = direct_saddle(equations, equations.operator, report)
+            u, p, history = direct_saddle(
+                equations, equations.operator, report, watch.factorisation
+            )
             if not history[-1] <= rtol:
                 raise NotConverged(_stopped(history[-1], rtol), history)
             return u, p, f"direct (SuperLU of both equations, scaled and refined), {why}", history
-        return _iterated(equations, f, g, why, rtol, report)
+        return _iterated(equations, f, g, begin or (equations.given, zero), why, rtol, report)
 
 
 def _iterated(
-    equations: MixedEquations, f: Floats, g: Floats, why: str, rtol: float, report: Report
+    equations: MixedEquations,
+    f: Floats,
+    g: Floats,
+    begin: tuple[Floats, Floats],
+    why: str,
+    rtol: float,
+    report: Report,
 ) -> tuple[Floats, Floats, str, list[float]]:
+    """From a first u and p: what is left there is solved for, and judged by f and g as ever."""
     from bezsoma.solvers.saddle import saddle
 
     assert isinstance(equations.operator, MixedFree)
-    size = max(float(np.abs(f).max()), float(np.abs(g).max()))
     held, modes = equations.held, equations.modes
-    u, p, history = saddle(equations.operator, held, f / size, g / size, modes, rtol, report)
-    u = u * size + equations.given
-    p = without_mean(p * size, modes, equations.pressure_net)
+    left_f, left_g = equations.residuals(*begin)
+    left_f[held] = 0.0
+    size = max(float(np.abs(f).max()), float(np.abs(g).max()))
+    u, p, history = saddle(
+        equations.operator,
+        held,
+        left_f / size,
+        left_g / size,
+        modes,
+        rtol,
+        report,
+        against=(f / size, g / size),
+    )
+    u = u * size + begin[0]
+    p = without_mean(p * size + begin[1], modes, equations.pressure_net)
     return u, p, f"BiCGStab of both equations without a matrix, {why}", history
 
 
@@ -168,8 +205,8 @@ def _pressure(body: Body, net: ControlNet, p: Floats) -> Field | BrokenField:
 def advice(body: Body) -> str:
     """What to do better with a displacement form close to nu = 1/2; nothing where it is as good.
 
-    The numbers are those of experiments/locking.py: from there on the mixed form of the same degree
-    takes less time for the same error.
+    The numbers are those of `bezsoma experiment locking`: from there on the mixed form of the same
+    degree takes less time for the same error.
     """
     nus = [law.nu for law in body.material_of_region if isinstance(law, LinearElastic)]
     worst = max(nus, default=0.0)
@@ -186,13 +223,16 @@ def advice(body: Body) -> str:
     return ""
 
 
-def mixed_choice(free: int, solver: str) -> tuple[str, str]:
-    """The solver for so many unknowns, and why."""
+def _solver_checked(solver: str) -> None:
     if solver not in MIXED_SOLVERS:
         raise InputError(
             f"solver = {solver!r} solves for a displacement alone, and this body has a pressure of "
             "its own; take 'direct' or 'saddle', or 'auto', which chooses between them"
         )
+
+
+def _choice(free: int, solver: str) -> tuple[str, str]:
+    """The solver for so many unknowns, and why."""
     if solver != "auto":
         return solver, "as asked for"
     if free <= DIRECT_UP_TO:

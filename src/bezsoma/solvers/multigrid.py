@@ -31,10 +31,9 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     """
     net = operator.net
     # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
-    stiff = float(np.abs(operator.lame).max() * np.cbrt(net.mesh.volumes.mean()))
-    first = net.walked()
-    corners, places, held_vertices = degree_one(net, held, first)
-    walk = operator.walk(stiff, first)
+    stiff = float(np.abs(operator.lame).max()) * net.mesh.mean_size
+    corners, places, held_vertices = degree_one(net, held)
+    walk = operator.walk(stiff)
     return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
 
 
@@ -50,21 +49,19 @@ def preconditioned(operator: MatrixFree, held: Bools) -> Callable[[Floats], Floa
     return z_of
 
 
-def degree_one(
-    net: ControlNet, held: Bools, first: Int32s | None = None
-) -> tuple[Int32s, Floats, Bools]:
+def degree_one(net: ControlNet, held: Bools) -> tuple[Int32s | None, Floats, Bools]:
     """What the problem of degree 1 on the same tets is made from.
 
-    The rows of each tet's vertices (t, 4), tets in the order of the walk; the places of the rows
-    (v, 3) mm; and which of their components are held (v, 3). `first` are the `walked` controls of
-    the net, if at hand.
+    The rows of each tet's vertices (t, 4), tets in the order of the walk, None where the walk of
+    the net itself has them; the places of the rows (v, 3) mm; and which of their components are
+    held (v, 3).
     """
     vertices = net if net.degree == 1 else ControlNet(net.mesh, 1)
     held_vertices = np.empty((vertices.count, 3), dtype=bool)
     held_vertices[vertices.starts[0]] = held[net.starts[0]]
     places = np.empty((vertices.count, 3))
     places[vertices.starts[0]] = net.mesh.points
-    corners = vertices.walked() if first is None or net.degree > 1 else first
+    corners = vertices.walked() if net.degree > 1 else None
     return corners, places, held_vertices
 
 
@@ -74,14 +71,27 @@ def multigrid(
     b: Floats,
     rtol: float,
     report: Report,
+    start: Floats | None = None,
     most: int = MOST_ITERATIONS,
 ) -> tuple[Floats, list[float]]:
     """x (c, 3), zero where held, with |b - K x| <= rtol |b|, and the relative residuals.
 
+    From `start`, zero where held, or from zero; |b| is the residual at zero in either case.
     The last residual is formed anew from the equations. Same bits for any number of threads.
     """
-    blocks = preconditioner(operator, equations.held)
-    x = np.zeros_like(b)
+    return iterated(preconditioner(operator, equations.held), b, rtol, report, start, most)
+
+
+def iterated(
+    blocks: _core.Multigrid,
+    b: Floats,
+    rtol: float,
+    report: Report,
+    start: Floats | None = None,
+    most: int = MOST_ITERATIONS,
+) -> tuple[Floats, list[float]]:
+    """What `multigrid` gives, by a preconditioner that was built before."""
+    x = np.zeros_like(b) if start is None else start.copy()
     history, residual, converged, indefinite, rounded = blocks.solve(
         b, x, length(b), rtol, most, report
     )

@@ -27,6 +27,9 @@ TIGHTEST = 1e-12
 FIRST = 1e-5
 """How exactly the way of the free part is found when supports move: what is left of their jump
 strains one layer of tets, and costs more iterations than it saves."""
+NEAR = 100.0
+"""Where the next solve comes so near to the goal anyway, and the square of the residual beyond it,
+it goes all the way: cheaper than one more iteration."""
 SHORT = 0.25
 LEAVE = 6
 GROWTH = 1e6
@@ -41,7 +44,12 @@ class Breakdown(BezSomaError):
 
 
 class StepFailed(BezSomaError):
-    """Equilibrium was not found at a fraction of the load: the message says why."""
+    """Equilibrium was not found at a fraction of the load: the message says why.
+
+    `refused` says why and where the last state that could not be was refused, if any was.
+    """
+
+    refused: str = ""
 
 
 class TangentFailed(StepFailed):
@@ -98,6 +106,8 @@ class System:
     tangent: Callable[[Floats, float], Linearised]
     doubt: Callable[[Floats], str] = lambda x: ""
     """What the material has lost at x, and where; nothing where it is sound."""
+    near: Callable[[float], Floats | None] = lambda fraction: None
+    """A state near the one in balance at a fraction of the load, if one is at hand."""
 
 
 @dataclass(frozen=True)
@@ -200,6 +210,12 @@ class _Step:
     def free(self, r: Floats) -> Floats:
         return np.where(self.system.held, 0.0, r)
 
+    def pushed(self, tangent: Linearised, jump: Floats, balance: Balance) -> Floats:
+        """What is out of balance when the supports have moved and nothing else."""
+        b = self.free(balance.r - tangent.product(jump))
+        self.floor = tuple(FLOOR * extent(b[part]) for part in self.system.parts)
+        return b
+
     def merit(self, r: Floats) -> float:
         """The weighted length of a residual over what is free."""
         free = self.free(r)
@@ -231,19 +247,43 @@ def extent(x: Floats) -> float:
 
 
 def equilibrium(
-    system: System, x: Floats, fraction: float, number: int, rule: Rule, record: Record
+    system: System,
+    x: Floats,
+    fraction: float,
+    number: int,
+    rule: Rule,
+    record: Record,
+    near: Floats | None = None,
 ) -> Floats:
     """The state (n,) in balance at a fraction of the load, from one in balance at less.
+
+    It begins at `near`, if that is given and a state that can be, in place of moving the supports
+    from x by a linear solve; there no tangent may be other than it should, as one that is not
+    positive where the way from x may lead to another state.
 
     Paper, eqs. 21 and 43, by eqs. 49, 50 and 52 as corrected: each iteration solves
     K dx = R - F for the free components, with what is still to be moved of the supports on the
     right, and takes the largest of 1, 1/2, 1/4, ... of dx with which no law
     fails and the residual falls. It ends when residual and energy are at most `rule.rtol`.
-    Raises StepFailed, with the reason.
+    Raises StepFailed, with the reason and what was refused last.
     """
     step = _Step(system, fraction, number, rule, record)
+    try:
+        return _iterated(step, x, near)
+    except StepFailed as failure:
+        failure.refused = step.refused
+        raise
+
+
+def _iterated(step: _Step, x: Floats, near: Floats | None) -> Floats:
+    """The state (n,) in balance, by Newton's iteration from x or from `near`."""
+    system, fraction, number, rule = step.system, step.fraction, step.number, step.rule
     goal = system.given(fraction)
     balance = system.balance(x, fraction)
+    led = False
+    if near is not None:
+        there, balance = _begun(step, x, balance, goal, near)
+        x, led = there, there is not x
     energy, tangent, before = 0.0, None, np.inf
     watchdog = _Watchdog()
     for count in range(rule.most + 1):
@@ -251,20 +291,19 @@ def equilibrium(
         moving = bool(jump.any())
         residual = step.relative(balance)
         if not moving and residual <= rule.rtol and energy <= rule.rtol:
+            if count == 0 and residual > 0:  # an earlier solution that needs nothing
+                step.record(Iteration(number, fraction, residual, energy, 0.0, 0, step.told()))
             return x
         if count == rule.most:
             break
         if tangent is None or rule.renew:
             tangent = system.tangent(x, fraction)
-        b = step.free(balance.r - tangent.product(jump) if moving else balance.r)
-        if moving:
-            step.floor = tuple(FLOOR * extent(b[part]) for part in system.parts)
+        b = step.pushed(tangent, jump, balance) if moving else step.free(balance.r)
         eta = FIRST if moving else _forcing(step, b, balance, before)
         before = step.merit(b)
-        try:
-            dx, linear, event = tangent.solve(b, eta)
-        except Breakdown as failure:
-            raise TangentFailed(str(failure)) from failure
+        dx, linear, event = _solved(tangent, b, eta)
+        if led and event:  # another branch, it may be, than that which x leads to
+            raise TangentFailed(event)
         dx += jump
         step.events += [event] if event else []
         try:
@@ -276,13 +315,43 @@ def equilibrium(
             continue
         energy = _energy(step, balance, dx)
         size, events = step.relative(balance), step.told()
-        record(Iteration(number, fraction, size, energy, factor, linear, events))
+        step.record(Iteration(number, fraction, size, energy, factor, linear, events))
         if not moving:
             x, balance = watchdog.seen(factor, x, balance, step.merit(balance.r))
     raise StepFailed(
         f"{rule.most} iterations leave a residual of {residual:.3g} and an energy of {energy:.3g}, "
-        f"{rule.rtol:g} were asked for" + (f"; refused was {step.refused}" if step.refused else "")
+        f"{rule.rtol:g} were asked for"
     )
+
+
+def _begun(
+    step: _Step, x: Floats, balance: Balance, goal: Floats, near: Floats
+) -> tuple[Floats, Balance]:
+    """The state `near` with its supports at their goal, or x where that cannot be."""
+    there = np.where(step.system.held, goal, near)
+    try:
+        found = step.system.balance(there, step.fraction)
+    except Inadmissible:
+        return x, balance
+    jump = np.where(step.system.held, goal - x, 0.0)
+    if jump.any():
+        step.pushed(step.system.tangent(x, step.fraction), jump, balance)
+    return there, found
+
+
+def _solved(tangent: Linearised, b: Floats, eta: float) -> Correction:
+    """A correction as exact as asked for, or as `LOOSEST`: Newton's residual decides what for."""
+    try:
+        return tangent.solve(b, eta)
+    except Breakdown as failure:
+        if eta >= LOOSEST:
+            raise TangentFailed(str(failure)) from failure
+        first = failure
+    try:
+        dx, linear, _ = tangent.solve(b, LOOSEST)
+    except Breakdown:
+        raise TangentFailed(str(first)) from first
+    return Correction(dx, linear, f"solved to {100 * LOOSEST:g} % only: {first}")
 
 
 def _forcing(step: _Step, b: Floats, balance: Balance, before: float) -> float:
@@ -303,7 +372,9 @@ def _forcing(step: _Step, b: Floats, balance: Balance, before: float) -> float:
     )
     fallen = 0.9 * (now / before) ** 2 if np.isfinite(before) and before > 0 else LOOSEST
     enough = target / now if now > 0 else LOOSEST
-    return float(min(LOOSEST, max(fallen, enough, TIGHTEST)))
+    last = fallen < NEAR * enough and step.relative(balance) ** 2 < 0.1 * step.rule.rtol
+    wanted = enough if last else fallen
+    return float(min(LOOSEST, max(wanted, TIGHTEST)))
 
 
 def _energy(step: _Step, balance: Balance, dx: Floats) -> float:

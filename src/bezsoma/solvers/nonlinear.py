@@ -27,18 +27,32 @@ from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import DIRECT_UP_TO
+from bezsoma.solvers.factors import Waiting
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.multigrid import preconditioned
-from bezsoma.solvers.newton import Balance, Iteration, Rule, System, extent
-from bezsoma.solvers.nonlinear_mixed import applied, factored, level, mixed_problem
+from bezsoma.solvers.newton import (
+    Balance,
+    Iteration,
+    Rule,
+    StepFailed,
+    System,
+    equilibrium,
+    extent,
+)
+from bezsoma.solvers.nonlinear_mixed import applied, factored_mixed, level, mixed_problem
 from bezsoma.solvers.solution import Solution, resultants
+from bezsoma.solvers.start import State, first_displacement
 from bezsoma.solvers.tangents import Precondition, applied_tangents, factored_tangents
 from bezsoma.solvers.watch import Watch
 
 METHODS = {"newton": (True, 40), "modified": (False, 200), "secant": (True, 500)}
 """Whether the tangent is formed anew in each iteration, and how many there may be."""
 SOLVERS = ("auto", "direct", "multigrid")
+ROUNDING = 1e-13
+"""A residual that no iteration need bring down further."""
+NEARLY = 1e-2
+"""How near to balance the state of degree 1 is from which a higher degree begins."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +85,13 @@ def is_linear(body: Body) -> bool:
 
 
 def nonlinear_solution(
-    body: Body, solver: str, rtol: float, threads: int, loading: Loading, watch: Watch
+    body: Body,
+    solver: str,
+    rtol: float,
+    threads: int,
+    loading: Loading,
+    watch: Watch,
+    start: State | None = None,
 ) -> Solution:
     """The displacement of a body of any laws, and what follows from it: see `solve`."""
     exactness = loading.exactness_for(body.degree)
@@ -79,19 +99,21 @@ def nonlinear_solution(
     if body.mixed and loading.method == "secant":
         raise InputError("method='secant' is for a displacement alone; take 'newton'")
     with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
+        _solver_checked(solver)
+        refuse_what_does_not_fit(body, solver, linear=False)
         net = ControlNet(body.mesh, body.degree)
     with watch.stage("supports", f"{3 * net.count} unknowns"):
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
-    chosen = _choice(int(known.mask.size - known.mask.sum()), solver)
-    refuse_what_does_not_fit(net, chosen)
+    chosen = choice(int(known.mask.size - known.mask.sum()), solver)
     with watch.stage("equations", f"{len(body.loads)} loads, {chosen}"):
         equations = nonlinear_equations(body, net, known)
-        form = (_mixed if body.mixed else _plain)(
-            body, equations, exactness, chosen, loading.method, threads
-        )
+        method, waiting = loading.method, watch.factorisation
+        form = form_of(body, equations, exactness, chosen, method, threads, waiting)
     with watch.stage("solving", f"{loading.method}, {chosen}"):
-        reached = loaded(form.system, np.zeros(len(form.system.held)), steps, rule, _teller(watch))
+        rest = np.zeros(len(form.system.held))
+        begin = None if start is None else form.begin(start)
+        reached = loaded(form.system, rest, steps, rule, _teller(watch), begin)
     how = f"{_NAMES[loading.method]}, {_SOLVES[chosen]}"
     with watch.stage("reactions", "and energy"):
         solution = _solution(equations, form, reached, how, dict(watch.timings))
@@ -101,13 +123,28 @@ def nonlinear_solution(
 
 
 @dataclass(frozen=True, eq=False)
-class _Form:
+class Form:
     """One form of the equations: what Newton iterates on, and what its answer means."""
 
     system: System
     pull: Callable[[Floats], Floats]
     energy: Callable[[Floats], float]
     pressure: Callable[[Floats], Field | BrokenField | None]
+    begin: Callable[[State], Floats]
+
+
+def form_of(
+    body: Body,
+    equations: NonlinearEquations,
+    exactness: int,
+    chosen: str,
+    method: str,
+    threads: int,
+    waiting: Waiting | None = None,
+) -> Form:
+    """The form that a body asks for: of the displacement alone, or beside a pressure."""
+    form = _mixed if body.mixed else _plain
+    return form(body, equations, exactness, chosen, method, threads, waiting)
 
 
 def _plain(
@@ -117,17 +154,46 @@ def _plain(
     chosen: str,
     method: str,
     threads: int,
-) -> _Form:
+    waiting: Waiting | None,
+) -> Form:
     laws = _laws(body)
     internal = internal_forces(equations.net, laws, exactness, threads)
     pointwise = Pointwise(equations.net, laws, exactness)
-    system = _system(equations, internal, pointwise, chosen, method, threads)
-    return _Form(
+    system = _system(equations, internal, pointwise, chosen, method, threads, waiting)
+    if chosen == "multigrid" and body.degree > 1:
+        system = replace(system, near=lambda t: _of_degree_one(equations, t, method, threads))
+    return Form(
         system,
         lambda x: internal.forces(x.reshape(-1, 3)),
-        lambda x: pointwise.energy(x.reshape(-1, 3)),
+        lambda x: (internal if internal.symmetric else pointwise).energy(x.reshape(-1, 3)),
         lambda x: None,
+        lambda start: first_displacement(start, equations.net).ravel(),
     )
+
+
+def _of_degree_one(
+    equations: NonlinearEquations, fraction: float, method: str, threads: int
+) -> Floats | None:
+    """The state (n,) of degree 1 near balance at a fraction of the load, elevated.
+
+    Where Newton begins: strains of tens of percent are then nearly right everywhere, so that it
+    need not come down from those of the linear law, which an exponential takes for far too large a
+    stress. Degree 1 has an eighth of the unknowns of degree 2, and its strains need one point a
+    tet. None where no balance is found: then it begins at rest.
+    """
+    body = replace(equations.body, degree=1)
+    net = ControlNet(body.mesh, 1)
+    known = prescribed(body, net)
+    if known.mask.all():
+        return None
+    coarse = nonlinear_equations(body, net, known)
+    form = _plain(body, coarse, 0, "multigrid", method, threads, None)
+    rule = Rule(NEARLY, *METHODS[method])
+    try:
+        x = equilibrium(form.system, np.zeros(3 * net.count), fraction, 1, rule, lambda each: None)
+    except StepFailed:
+        return None
+    return equations.net.elevated(x.reshape(-1, 3), net).ravel()
 
 
 def _mixed(
@@ -137,9 +203,10 @@ def _mixed(
     chosen: str,
     method: str,
     threads: int,
-) -> _Form:
+    waiting: Waiting | None,
+) -> Form:
     problem = mixed_problem(body, equations, exactness, threads)
-    tangent = factored(problem) if chosen == "direct" else applied(problem, threads)
+    tangent = factored_mixed(problem, waiting) if chosen == "direct" else applied(problem, threads)
 
     def pressure(x: Floats) -> Field | BrokenField:
         p, net = frozen(level(problem, problem.parted(x)[1])), problem.internal.pressure_net
@@ -147,11 +214,12 @@ def _mixed(
             return Field(net, p)
         return BrokenField(body.mesh, net.degree, frozen(p[net.of_tet]))
 
-    return _Form(
+    return Form(
         problem.system(tangent),
         lambda x: problem.fast.forces(*problem.parted(x))[0],
         lambda x: problem.internal.energy(*problem.parted(x)),
         pressure,
+        problem.begun,
     )
 
 
@@ -166,12 +234,16 @@ _SOLVES = {
 }
 
 
-def _choice(free: int, solver: str) -> str:
+def _solver_checked(solver: str) -> None:
     if solver not in SOLVERS:
         raise InputError(
             f"solver={solver!r} serves linear bodies only; for other laws and for pressures that "
             "follow take 'direct', 'multigrid' or 'auto'"
         )
+
+
+def choice(free: int, solver: str) -> str:
+    """The solver of the linear systems of Newton for so many unknowns."""
     if solver != "auto":
         return solver
     return "direct" if free <= DIRECT_UP_TO else "multigrid"
@@ -194,12 +266,13 @@ def _system(
     chosen: str,
     method: str,
     threads: int,
+    waiting: Waiting | None,
 ) -> System:
     if method == "secant":
         pointwise = replace(pointwise, laws=tuple(Secant(law) for law in pointwise.laws))
     held = equations.held.ravel()
     if chosen == "direct":
-        tangent = factored_tangents(equations, pointwise)
+        tangent = factored_tangents(equations, pointwise, waiting)
     else:
         at_u = _preconditioner(equations, pointwise, threads)
         tangents: Internal = pointwise if method == "secant" else internal
@@ -248,7 +321,7 @@ def _teller(watch: Watch) -> Callable[[Iteration], None]:
 
 def _solution(
     equations: NonlinearEquations,
-    form: _Form,
+    form: Form,
     reached: Reached,
     how: str,
     timings: dict[str, float],
@@ -262,27 +335,29 @@ def _solution(
     return Solution(
         body_at(equations.body, reached.fraction),
         displacement,
-        resultants(net, equations.of_support, pull),
-        form.energy(x),
-        swelling(equations.body, displacement),
-        how,
-        history,
-        len(history),
-        in_balance[-1].residual if in_balance else 0.0,
-        int(len(form.system.held) - form.system.held.sum()),
-        timings,
-        form.pressure(x),
+        reactions=resultants(net, equations.of_support, pull),
+        energy=form.energy(x),
+        volume_change=swelling(equations.body, displacement),
+        method=how,
+        history=history,
+        iterations=len(history),
+        residual=in_balance[-1].residual if in_balance else 0.0,
+        free=int(len(form.system.held) - form.system.held.sum()),
+        timings=timings,
+        pressure=form.pressure(x),
         path=reached.path,
     )
 
 
 def _unreached(reached: Reached, last: Solution) -> NotConverged:
     history = [iteration.residual for iteration in reached.path]
+    exact = " a larger rtol, for only rounding is left of the residual;"
+    helps = exact if min(history, default=1.0) < ROUNDING and reached.fraction == 0 else ""
     return NotConverged(
         f"at {100 * reached.tried:.4g} % of the load no equilibrium was found, the last is at "
-        f"{100 * reached.fraction:.4g} %: {reached.why}. What helps: a smaller load or motion, "
-        "smaller steps (steps='auto' halves them as far as 1/1024), a finer mesh where it is "
-        "strained most, a softer law; the last state in balance is `last` of this error",
+        f"{100 * reached.fraction:.4g} %: {reached.why}. What helps:{helps} a smaller load or "
+        "motion, smaller steps (steps='auto' halves them as far as 1/1024), a finer mesh where it "
+        "is strained most, a softer law; the last state in balance is `last` of this error",
         history,
         last=last,
         fraction=reached.fraction,

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import block_diag, csc_array, csr_array
-from scipy.sparse.linalg import splu
 
 from bezsoma import bernstein
 from bezsoma.arrays import Bools, Floats, frozen
@@ -26,9 +25,11 @@ from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import FunctionLaw, MixedLaw, shear_at_rest
 from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.torn import pressure_net
+from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.multigrid import preconditioned
 from bezsoma.solvers.newton import Balance, Breakdown, Correction, Linearised, System, extent
+from bezsoma.solvers.start import State, first_displacement, first_pressure
 from bezsoma.solvers.tangents import Factored
 
 MOST_PRODUCTS = 600
@@ -66,8 +67,7 @@ class MixedProblem:
     @property
     def weight(self) -> float:
         """Takes a volume that is out of balance, mm3, to a force: G over the size of a tet."""
-        size = float(np.cbrt(self.equations.net.mesh.volumes.mean()))
-        return float(self.stiffness.mean()) / size
+        return float(self.stiffness.mean()) / self.equations.net.mesh.mean_size
 
     def parted(self, x: Floats) -> tuple[Floats, Floats]:
         """U (c, 3) and p (cp,)."""
@@ -90,6 +90,16 @@ class MixedProblem:
         """What is prescribed (3c + cp,)."""
         u = self.equations.given(fraction).ravel()
         return np.concatenate([u, np.zeros(self.internal.pressure_net.count)])
+
+    def begun(self, start: State) -> Floats:
+        """An earlier solution as x (3c + cp,); where a level is held at zero, with that level."""
+        net = self.internal.pressure_net
+        p = first_pressure(start, net, self.equations.net.mesh)
+        for mode in self.modes:
+            pinned = np.flatnonzero(mode)[0]
+            p = p - mode * (p[pinned] / mode[pinned])
+        u = first_displacement(start, self.equations.net)
+        return np.concatenate([u.ravel(), p])
 
     def system(self, tangent: Callable[[Floats, float], Linearised]) -> System:
         """What Newton has to know."""
@@ -151,18 +161,21 @@ def kappa_of(law: object) -> float:
     return 1.0 if kappa is None else float(kappa)
 
 
-def factored(problem: MixedProblem) -> Callable[[Floats, float], Linearised]:
+def factored_mixed(
+    problem: MixedProblem, waiting: Waiting | None
+) -> Callable[[Floats, float], Linearised]:
     """What gives the tangent at x and a fraction of the load, as a matrix."""
     free, weight = np.flatnonzero(~problem.held), problem.weight
     cp = problem.internal.pressure_net.count
     scale = np.concatenate([np.ones(problem.split), np.full(cp, weight)])
 
     def at(x: Floats, fraction: float) -> Linearised:
-        matrix = problem.internal.matrix(*problem.parted(x))
+        with np.errstate(over="ignore", invalid="ignore"):  # `Factored` says so
+            matrix = problem.internal.matrix(*problem.parted(x))
         follow = problem.equations.follow(problem.parted(x)[0], fraction)
         if follow is not None:
             matrix = csr_array(matrix - block_diag([follow, csr_array((cp, cp))]))
-        return Factored(matrix, free, scale)
+        return Factored(matrix, free, scale, waiting)
 
     return at
 
@@ -218,11 +231,11 @@ def applied(problem: MixedProblem, threads: int) -> Callable[[Floats, float], Li
     G = problem.stiffness
     operator = MatrixFree(net, frozen(np.stack([G, G], axis=1)), threads)
     blocks = preconditioned(operator, problem.equations.held)
-    mass = splu(csc_array(pressure_mass(pressures, 1 / G[net.mesh.region])))
+    mass = factored(csc_array(pressure_mass(pressures, 1 / G[net.mesh.region])))
 
     def at(x: Floats, fraction: float) -> Linearised:
         follow = problem.equations.follow(problem.parted(x)[0], fraction)
-        return AppliedMixed(problem, x, follow, blocks, mass.solve)
+        return AppliedMixed(problem, x, follow, blocks, mass)
 
     return at
 

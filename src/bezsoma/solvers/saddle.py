@@ -13,7 +13,7 @@ from bezsoma.errors import NotConverged
 from bezsoma.solvers.krylov import Report
 from bezsoma.solvers.multigrid import degree_one
 
-MOST_ITERATIONS = 2500
+MOST_ITERATIONS = 5000
 
 
 def preconditioner(operator: MixedFree, held: Bools, levels: Floats) -> _core.Saddle:
@@ -47,6 +47,7 @@ def saddle(
     rtol: float,
     report: Report,
     most: int = MOST_ITERATIONS,
+    against: tuple[Floats, Floats] | None = None,
 ) -> tuple[Floats, Floats, list[float]]:
     """u (c, 3) mm, zero where held, and p (cp,) MPa with `operator` (u, p) = (f, g) where free.
 
@@ -55,18 +56,28 @@ def saddle(
 
     Forces [N] and changes of volume [mm3] are compared by w = 2 G / h, N/mm3, with the largest G
     and the mean width h of a tet: converged means |r_u| <= rtol r and w |r_p| <= rtol r with
-    r^2 = |f|^2 + w^2 |g|^2, on the residual formed anew at the end. The history has the larger of
+    r^2 = |f|^2 + w^2 |g|^2, on the residual formed anew at the end; `against` has other f and g
+    for r, where these are what an earlier solution leaves. The history has the larger of
     both relative to r, one a step; a step applies the form twice. Same bits for any number of
     threads.
     """
     G, unit = float(operator.moduli[:, 0].max()), _unit(operator)
+    weight = 2 * G**2 / unit
+    f, u, p = np.where(held, 0.0, f), np.zeros_like(f), np.zeros_like(g)
+    part = 1.0 if against is None else _size(f, g, weight) / _size(*against, weight)
+    if part <= rtol:
+        return u, p, [part]
     levels = _orthogonal(levels)
     solver = preconditioner(operator, held, levels)
-    u, p = np.zeros_like(f), np.zeros_like(g)
-    history, residual, converged, broken, rounded = solver.solve(
-        np.where(held, 0.0, f), plain(g), u, p, unit, 2 * G**2 / unit, rtol, most, report
+
+    def told(step: int, residual: float) -> None:
+        report(step, part * residual)
+
+    found, residual, converged, broken, rounded = solver.solve(
+        f, plain(g), u, p, unit, weight, rtol / part, most, told
     )
-    history[-1] = residual
+    history = [part * each for each in found[:-1]] + [part * residual]
+    residual = history[-1]
     if converged:
         return u, _without(operator, levels, p), history
     how = "stand still, since rounding lets them come no further," if rounded else "are not done"
@@ -82,10 +93,14 @@ def saddle(
     )
 
 
+def _size(f: Floats, g: Floats, weight: float) -> float:
+    """sqrt(|f|^2 + w^2 |g|^2), N."""
+    return float(np.sqrt(np.einsum("ck,ck->", f, f) + weight**2 * np.einsum("p,p->", g, g)))
+
+
 def _unit(operator: MixedFree) -> float:
     """G h, N/mm: by which the displacement's preconditioner is scaled to order one, for float32."""
-    h = float(np.cbrt(operator.net.mesh.volumes.mean()))
-    return float(operator.moduli[:, 0].max()) * h
+    return float(operator.moduli[:, 0].max()) * operator.net.mesh.mean_size
 
 
 def _orthogonal(levels: Floats) -> Floats:

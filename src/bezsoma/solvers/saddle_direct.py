@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import block_array, csc_array, diags_array
-from scipy.sparse.linalg import splu
 
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.level import without_mean
 from bezsoma.equations.mixed import MixedEquations, MixedMatrix
 from bezsoma.errors import InputError, NotConverged
 from bezsoma.solvers.direct import LARGEST, REFINEMENTS
+from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.krylov import Report
 
 PIVOT = 0.1
@@ -43,7 +43,10 @@ class _Scaled:
 
 
 def direct_saddle(
-    equations: MixedEquations, matrix: MixedMatrix, report: Report | None = None
+    equations: MixedEquations,
+    matrix: MixedMatrix,
+    report: Report | None = None,
+    waiting: Waiting | None = None,
 ) -> tuple[Floats, Floats, list[float]]:
     """u (c, 3) and p (cp,) with what is prescribed, and the relative residual of each refinement.
 
@@ -54,7 +57,7 @@ def direct_saddle(
     afterwards: the equation of that control follows from the others. Refined as `direct` is.
     """
     parts = _scaled(equations, matrix)
-    solve = _factored(matrix, parts)
+    solve = _solver(matrix, parts, waiting)
     u, p = equations.given.copy(), np.zeros(equations.pressure_net.count)
     r = parts.packed(*equations.residuals(u, p))
     whole, history = _length(r), [1.0]
@@ -92,7 +95,9 @@ def _scaled(equations: MixedEquations, matrix: MixedMatrix) -> _Scaled:
     return _Scaled(free, kept, 1 / np.sqrt(stiff), 1 / np.sqrt(schur))
 
 
-def _factored(matrix: MixedMatrix, parts: _Scaled) -> Callable[[Floats], Floats]:
+def _solver(
+    matrix: MixedMatrix, parts: _Scaled, waiting: Waiting | None
+) -> Callable[[Floats], Floats]:
     if matrix.shear.blocks.size + 2 * matrix.coupling.nnz > LARGEST:
         raise InputError(
             f"the matrix has more entries than the direct solver can count ({LARGEST}); use "
@@ -104,7 +109,7 @@ def _factored(matrix: MixedMatrix, parts: _Scaled) -> Callable[[Floats], Floats]
     M = sp @ matrix.softness[parts.kept][:, parts.kept] @ sp
     whole = csc_array(block_array([[K, B.T], [B, -M]]))
     try:
-        factors = splu(whole, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT)
+        return factored(whole, waiting, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT)
     except MemoryError as full:
         raise InputError(
             f"the factors of {whole.shape[0]} unknowns are more than the direct solver can hold or "
@@ -116,4 +121,3 @@ def _factored(matrix: MixedMatrix, parts: _Scaled) -> Callable[[Floats], Floats]
             "some pressure is not determined; look for parts of the mesh with most of their "
             "boundary prescribed, and cut their tets: solve(unlocked(body))"
         ) from singular
-    return lambda r: np.asarray(factors.solve(r))

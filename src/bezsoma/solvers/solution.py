@@ -45,10 +45,13 @@ class Solution:
     stored energy, `volume_change` is int div u in mm3. `timings` has seconds by stage.
 
     `pressure` [MPa], positive in compression, is there where the body has one of its own: a
-    continuous Field, or one that breaks between regions. `level` says what determines its level,
+    continuous Field, or one that breaks between regions. `level` is a sentence about what its
+    mean follows from: the equations, or, where they leave a constant open, the choice of zero.
     `held_tets` counts tets all four vertices of which are prescribed (see `unlocked`). `advice`
     is what another form would do better; often nothing. Where the body is not linear, `path` has
     every iteration of the load steps.
+
+    A solution can be pickled where the functions in its body can: those of a module, no lambdas.
     """
 
     body: Body

@@ -23,12 +23,13 @@ from bezsoma.mechanics.body import Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import DIRECT_UP_TO, direct
-from bezsoma.solvers.krylov import Report, conjugate_gradients, incomplete_cholesky
+from bezsoma.solvers.krylov import conjugate_gradients, incomplete_cholesky
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.mixed import advice, mixed_solution
 from bezsoma.solvers.multigrid import multigrid
 from bezsoma.solvers.nonlinear import Loading, is_linear, nonlinear_solution
 from bezsoma.solvers.solution import Solution, reactions
+from bezsoma.solvers.start import State, first_displacement, start_checked
 from bezsoma.solvers.watch import Progress, Watch, in_range
 
 MOST_THREADS = 1024
@@ -45,6 +46,7 @@ def solve(
     steps: Steps = "auto",
     method: str = "newton",
     exactness: int | None = None,
+    start: State | None = None,
     progress: Progress | None = None,
 ) -> Solution:
     """The displacement of a body at rest [mm], and what follows from it: see `Solution`.
@@ -70,12 +72,11 @@ def solve(
 
     Args:
         body: what is to be solved.
-        solver: "direct" (a sparse factorisation, to rounding; Ctrl-C waits for its end, so beware
-            of more than some 10 000 unknowns), "multigrid" (conjugate gradients without a matrix,
-            preconditioned by blocks of entities and multigrid), "cg" (the paper's: with an
-            incomplete Cholesky factorisation), or "auto": direct up to `DIRECT_UP_TO` unknowns,
-            multigrid above. With a pressure: "direct", "saddle" (without a matrix,
-            preconditioned), or "auto".
+        solver: "direct" (a sparse factorisation, to rounding; beware of more than some 10 000
+            unknowns), "multigrid" (conjugate gradients without a matrix, preconditioned by blocks
+            of entities and multigrid), "cg" (the paper's: with an incomplete Cholesky
+            factorisation), or "auto": direct up to `DIRECT_UP_TO` unknowns, multigrid above. With
+            a pressure: "direct", "saddle" (without a matrix, preconditioned), or "auto".
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
             for others relative to the larger of internal and applied forces, the work of the
@@ -89,6 +90,10 @@ def solve(
             each step is kept) or "secant" (the paper's eq. 51, for the stiffening laws).
         exactness: up to which degree the quadrature of laws that are not linear is exact; 2 n + 2,
             and at least 6, where not given.
+        start: an earlier Solution, or Results, of about the same body on any mesh and of any
+            degree: iterations begin there and are fewer; when they end does not depend on it. A
+            load is first put on at once from there, and in steps from rest if that fails. A direct
+            factorisation has no use for it.
         progress: called with a stage, how much of it is done, and a note.
 
     Raises:
@@ -99,18 +104,23 @@ def solve(
     loading = Loading(steps, method, exactness)
     linear = not isinstance(body, Body) or is_linear(body)
     rtol = (1e-8 if linear else 1e-10) if rtol is None else rtol
-    _check(body, solver, rtol)
+    _check(body, solver, rtol, progress)
+    rtol = float(rtol)
+    begin = start_checked(start)
     watch = Watch(progress)
-    number = _threads(threads)
+    number = threads_asked(threads)
     if not linear:
-        return nonlinear_solution(body, solver, rtol, number, loading, watch)
+        return nonlinear_solution(body, solver, rtol, number, loading, watch, begin)
     if body.mixed:
-        return mixed_solution(body, solver, rtol, number, watch)
+        return mixed_solution(body, solver, rtol, number, watch, begin)
     chosen, why, equations = _equations(body, solver, number, watch)
     b = equations.residual(equations.given)
     in_range(b, "the forces at zero free displacement")
     b[equations.held] = 0.0
-    found = _solved(equations, b, chosen, why, rtol, watch)
+    x = None
+    if begin is not None and chosen != "direct":
+        x = first_displacement(begin, equations.net)
+    found = _solved(equations, b, x, chosen, why, rtol, watch)
     return _solution(body, equations, found, number, watch)
 
 
@@ -121,7 +131,7 @@ class _Found:
     history: list[float] = field(default_factory=list)
 
 
-def _check(body: Body, solver: str, rtol: float) -> None:
+def _check(body: Body, solver: str, rtol: float, progress: Progress | None) -> None:
     if not isinstance(body, Body):
         raise InputError(f"solve() was given {body!r}; it solves a Body")
     if solver not in SOLVERS:
@@ -131,13 +141,18 @@ def _check(body: Body, solver: str, rtol: float) -> None:
             "solver = 'saddle' is for bodies with a pressure of their own, and this one has none: "
             "give Body(..., incompressible=True), or take 'multigrid'"
         )
-    if not (isinstance(rtol, int | float) and 0 < rtol < 1):
-        raise InputError(f"rtol = {rtol!r} has to lie between 0 and 1; 1e-8 serves most")
+    if not (isinstance(rtol, int | float | np.floating) and 0 < rtol < 1):
+        raise InputError(f"rtol = {rtol!r} has to be a number between 0 and 1; 1e-8 serves most")
+    if progress is not None and not callable(progress):
+        raise InputError(
+            f"progress = {progress!r} cannot be called: give a function of a stage, how much of it "
+            "is done and a note, or None"
+        )
 
 
-def _threads(asked: int | None) -> int:
+def threads_asked(asked: int | None) -> int:
     """How many threads: as asked for, else as the environment says, else 0 for all cores."""
-    given = os.environ.get("BEZSOMA_THREADS", "0") if asked is None else asked
+    given = os.environ.get("BEZSOMA_THREADS") or "0" if asked is None else asked
     try:
         number = int(given)
     except (TypeError, ValueError):
@@ -153,13 +168,13 @@ def _threads(asked: int | None) -> int:
 
 def _equations(body: Body, solver: str, threads: int, watch: Watch) -> tuple[str, str, Equations]:
     with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
+        refuse_what_does_not_fit(body, solver)
         lame = lame_constants(body)
         net = ControlNet(body.mesh, body.degree)
     with watch.stage("supports", f"{3 * net.count} unknowns"):
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
     chosen, why = _choice(int(known.mask.size - known.mask.sum()), solver)
-    refuse_what_does_not_fit(net, chosen)
     with watch.stage("loads", f"{len(body.loads)} given"):
         loads = forces(body, net)
     with watch.stage("stiffness", f"{3 * net.count} unknowns"):
@@ -186,7 +201,13 @@ def _choice(free: int, solver: str) -> tuple[str, str]:
 
 
 def _solved(
-    equations: Equations, b: Floats, chosen: str, why: str, rtol: float, watch: Watch
+    equations: Equations,
+    b: Floats,
+    start: Floats | None,
+    chosen: str,
+    why: str,
+    rtol: float,
+    watch: Watch,
 ) -> _Found:
     with watch.stage("solving", f"{chosen}: {why}"):
         if not b.any():
@@ -197,14 +218,20 @@ def _solved(
         if chosen == "cg":
             method = _iteratively
         b /= size
-        found = method(equations, b, rtol, watch.iterations(rtol))
+        if start is not None:
+            start = np.where(equations.held, 0.0, start) / size
+        found = method(equations, b, start, rtol, watch)
         found.x[...] *= size
         return replace(found, method=f"{found.method}, {why}")
 
 
-def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
+def _directly(
+    equations: Equations, b: Floats, start: Floats | None, rtol: float, watch: Watch
+) -> _Found:
+    """From nothing: what a factorisation gives does not depend on a start."""
     assert isinstance(equations.stiffness, BlockMatrix)
-    x, history = direct(equations, equations.stiffness, b, report)
+    report, waiting = watch.iterations(rtol), watch.factorisation
+    x, history = direct(equations, equations.stiffness, b, report, waiting)
     if not history[-1] <= rtol:
         raise NotConverged(
             f"the direct solver is left with {history[-1]:.3g} of the residual at zero free "
@@ -216,17 +243,24 @@ def _directly(equations: Equations, b: Floats, rtol: float, report: Report) -> _
     return _Found(x, "direct (SuperLU, scaled and refined)", history)
 
 
-def _without_a_matrix(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
+def _without_a_matrix(
+    equations: Equations, b: Floats, start: Floats | None, rtol: float, watch: Watch
+) -> _Found:
     assert isinstance(equations.stiffness, MatrixFree)
-    x, history = multigrid(equations, equations.stiffness, b, rtol, report)
+    x, history = multigrid(equations, equations.stiffness, b, rtol, watch.iterations(rtol), start)
     how = f"{equations.stiffness.kernel.instructions}, {equations.stiffness.kernel.threads} threads"
     return _Found(x, f"conjugate gradients with entity blocks and multigrid ({how})", history)
 
 
-def _iteratively(equations: Equations, b: Floats, rtol: float, report: Report) -> _Found:
+def _iteratively(
+    equations: Equations, b: Floats, start: Floats | None, rtol: float, watch: Watch
+) -> _Found:
     assert isinstance(equations.stiffness, BlockMatrix)
     factor = incomplete_cholesky(equations.stiffness, equations.held)
-    x, history = conjugate_gradients(equations.free_product, factor, b, rtol, report=report)
+    report = watch.iterations(rtol)
+    x, history = conjugate_gradients(
+        equations.free_product, factor, b, rtol, report=report, start=start
+    )
     raised = f" of the diagonal raised by {factor.shift:g} of itself" if factor.shift else ""
     return _Found(x, f"conjugate gradients with incomplete Cholesky{raised}", history)
 
@@ -246,14 +280,14 @@ def _solution(
     return Solution(
         body,
         displacement,
-        supports,
-        energy,
-        swelling,
-        found.method,
-        tuple(found.history),
-        max(len(found.history) - 1, 0),
-        found.history[-1] if found.history else 0.0,
-        equations.free,
-        watch.timings,
+        reactions=supports,
+        energy=energy,
+        volume_change=swelling,
+        method=found.method,
+        history=tuple(found.history),
+        iterations=max(len(found.history) - 1, 0),
+        residual=found.history[-1] if found.history else 0.0,
+        free=equations.free,
+        timings=watch.timings,
         advice=advice(body),
     )

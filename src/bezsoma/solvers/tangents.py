@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array, diags_array
-from scipy.sparse.linalg import splu
 
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.equations.nonlinear import NonlinearEquations
@@ -17,6 +16,7 @@ from bezsoma.equations.pointwise import Pointwise, Tangent
 from bezsoma.equations.tangent_matrix import tangent_matrix
 from bezsoma.errors import NotConverged
 from bezsoma.solvers.bicgstab import stabilised
+from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.krylov import conjugate_gradients
 from bezsoma.solvers.newton import Breakdown, Correction, Linearised
@@ -34,6 +34,8 @@ class Factored:
     free: Ints
     scale: Floats | None = None
     """What takes the units off unknowns of different kinds (n,), so that pivots compare."""
+    waiting: Waiting | None = None
+    """Who hears of a long factorisation."""
 
     def product(self, dx: Floats) -> Floats:
         """K dx (n,)."""
@@ -41,11 +43,13 @@ class Factored:
 
     def solve(self, b: Floats, rtol: float) -> Correction:
         """The free dx (n,) with K dx = b, refined once; `rtol` is met whatever it is."""
+        if not np.isfinite(self.matrix.data).all():
+            raise Breakdown("the tangent leaves the range of numbers")
         scale = np.ones(len(b)) if self.scale is None else self.scale
         S = diags_array(scale[self.free])
         part = csc_array(S @ self.matrix[self.free][:, self.free] @ S)
         try:
-            factors = splu(part)
+            solve = factored(part, self.waiting)
         except RuntimeError as singular:
             raise Breakdown(
                 "the tangent is singular: the body has a motion that nothing resists, as where it "
@@ -53,8 +57,8 @@ class Factored:
             ) from singular
         dx = np.zeros_like(b)
         right = (scale * b)[self.free]
-        dx[self.free] = factors.solve(right)
-        dx[self.free] += factors.solve(right - part @ dx[self.free])
+        dx[self.free] = solve(right)
+        dx[self.free] += solve(right - part @ dx[self.free])
         if not np.isfinite(dx).all():
             raise Breakdown("the tangent is singular to rounding")
         return Correction(scale * dx, 1)
@@ -80,8 +84,8 @@ class Applied:
     def solve(self, b: Floats, rtol: float) -> Correction:
         """The free dx (n,), by conjugate gradients or, not symmetric, by BiCGStab.
 
-        GMRES takes over where a symmetric tangent is not positive, as beyond buckling: BiCGStab
-        stands still there.
+        GMRES takes over where these do not come through: where a symmetric tangent is not positive,
+        as beyond buckling, and where BiCGStab stands still.
         """
         size = float(np.abs(b).max())
         if size == 0:
@@ -94,16 +98,16 @@ class Applied:
         return Correction(x.ravel() * size, count, event)
 
     def _solved(self, b: Floats, rtol: float) -> Correction:
-        if not self.symmetric:
-            x, count = stabilised(self._free_product, self.precondition, b, rtol, MOST_ITERATIONS)
-            return Correction(x, count)
+        apply, rough = self._free_product, self._rough_product
+        how = (self.precondition, b, rtol, MOST_ITERATIONS)
         try:
-            x, history = conjugate_gradients(
-                self._free_product, self.precondition, b, rtol, MOST_ITERATIONS
-            )
+            if not self.symmetric:
+                return Correction(*stabilised(apply, *how, rough))
+            x, history = conjugate_gradients(apply, *how, rough=rough)
             return Correction(x, len(history) - 1)
         except NotConverged as failure:
-            event = f"GMRES solved where conjugate gradients did not: {failure}"
+            first = "conjugate gradients" if self.symmetric else "BiCGStab"
+            event = f"GMRES solved where {first} did not: {failure}"
         flat, count = minimal_residual(
             lambda v: self._free_product(v.reshape(-1, 3)).ravel(),
             lambda r: self.precondition(r.reshape(-1, 3)).ravel(),
@@ -114,21 +118,31 @@ class Applied:
         return Correction(flat.reshape(-1, 3), count, event)
 
     def _free_product(self, x: Floats) -> Floats:
-        out = self.product(x.ravel()).reshape(-1, 3)
-        out[self.held] = 0.0
-        return out
+        return self._freed(self.tangent.apply(x), x)
+
+    def _rough_product(self, x: Floats) -> Floats:
+        return self._freed(self.tangent.roughly(x), x)
+
+    def _freed(self, f: Floats, x: Floats) -> Floats:
+        if self.follow is not None:
+            f -= (self.follow @ x.ravel()).reshape(-1, 3)
+        f[self.held] = 0.0
+        return f
 
 
 def factored_tangents(
-    equations: NonlinearEquations, pointwise: Pointwise
+    equations: NonlinearEquations, pointwise: Pointwise, waiting: Waiting | None = None
 ) -> Callable[[Floats, float], Linearised]:
     """What gives the tangent at x (n,) and a fraction of the load, as a matrix."""
     free = np.flatnonzero(~equations.held.ravel())
 
     def at(x: Floats, fraction: float) -> Factored:
         u = x.reshape(-1, 3)
-        matrix, follow = tangent_matrix(pointwise, u), equations.follow(u, fraction)
-        return Factored(matrix if follow is None else csr_array(matrix - follow), free)
+        with np.errstate(over="ignore", invalid="ignore"):  # `Factored` says so
+            matrix, follow = tangent_matrix(pointwise, u), equations.follow(u, fraction)
+        if follow is not None:
+            matrix = csr_array(matrix - follow)
+        return Factored(matrix, free, waiting=waiting)
 
     return at
 

@@ -49,6 +49,10 @@ class Watch:
 
         return report
 
+    def factorisation(self, seconds: float) -> None:
+        """Tell that SuperLU, which does not say how far it is, is still at work."""
+        self.tell("solving", None, f"factoring, {seconds:.0f} s so far")
+
 
 def in_range(numbers: Floats, what: str) -> None:
     """Raise an InputError where numbers overflowed."""
