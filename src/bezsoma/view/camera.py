@@ -7,6 +7,7 @@ where the viewer stands; seen from the front, the patient's left is on the viewe
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -107,11 +108,45 @@ def axes(view: str) -> Floats:
     return frozen(np.stack([right, np.cross(towards, right), towards]))
 
 
+def turned(frame: Floats, degrees: float) -> Floats:
+    """The axes (3, 3) of a viewer who walked to the right around what is seen, by an angle.
+
+    Up stays up. A quarter of the way round from the front is the patient's left:
+
+    >>> bool(np.allclose(turned(axes("front"), 90.0), axes("left")))
+    True
+    """
+    cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    right, up, towards = frame
+    return frozen(np.stack([cos * right - sin * towards, up, sin * right + cos * towards]))
+
+
+def around(
+    frames: Sequence[Floats], points: Floats, size: tuple[int, int], margin: float = 0.07
+) -> list[Camera]:
+    """Cameras with these axes, of one centre and one scale, each of which shows all points."""
+    centre = frozen((points.min(axis=0) + points.max(axis=0)) / 2)
+    room = np.array(size) * (0.5 - margin)
+    reach = [np.abs((points - centre) @ frame[:2].T).max(axis=0) for frame in frames]
+    least = 1e-12 * max(1.0, float(np.abs(points).max()))
+    scale = float((room / np.maximum(reach, least)).min())
+    return [Camera(frame, centre, scale, size) for frame in frames]
+
+
 def fitted(view: str, points: Floats, size: tuple[int, int], margin: float = 0.07) -> Camera:
     """The camera of a named view that shows all points (p, 3) in mm, with a margin around."""
-    frame = axes(view)
-    low, high = (bound(points @ frame.T, axis=0) for bound in (np.min, np.max))
+    return fitted_alike(axes(view), [points], size, margin)[0]
+
+
+def fitted_alike(
+    frame: Floats, subjects: Sequence[Floats], size: tuple[int, int], margin: float = 0.07
+) -> list[Camera]:
+    """A camera with these axes for the points (p, 3) of each subject, all of one scale."""
     room = np.array(size) * (1 - 2 * margin)
-    extent = np.maximum(high - low, 1e-12 * max(1.0, float(np.abs(points).max())))
-    scale = float((room / extent[:2]).min())
-    return Camera(frame, frozen((low + high) / 2 @ frame), scale, size)
+    centres, scales = [], []
+    for points in subjects:
+        low, high = (bound(points @ frame.T, axis=0) for bound in (np.min, np.max))
+        extent = np.maximum(high - low, 1e-12 * max(1.0, float(np.abs(points).max())))
+        scales.append(float((room / extent[:2]).min()))
+        centres.append(frozen((low + high) / 2 @ frame))
+    return [Camera(frame, centre, min(scales), size) for centre in centres]

@@ -11,17 +11,19 @@ import numpy.typing as npt
 from bezsoma.arrays import Bools, Floats
 from bezsoma.view.camera import Camera
 from bezsoma.view.light import BACKGROUND, SKIN, lamps, linear, lit, screen
+from bezsoma.view.pieces import Drawn
 from bezsoma.view.rays import Scene, Singles
-from bezsoma.view.surfaces import Surface
 
 _CHUNK = 1 << 17
+_GRAIN = 1e-6
+"""Values in single precision that differ by less, relative to the largest, are one: no line."""
 
 
 @dataclass(frozen=True, eq=False)
 class Layer:
     """A surface and its paint: one colour, or values (f, m) looked up in a table of colours."""
 
-    surface: Surface
+    surface: Drawn
     colour: tuple[float, float, float] = SKIN
     values: Floats | None = None
     limits: tuple[float, float] = (0.0, 1.0)
@@ -65,7 +67,7 @@ def shaded(camera: Camera, layers: list[Layer], rays: int = 2) -> Shaded:
     )
 
 
-def coverage(camera: Camera, surface: Surface, rays: int = 4) -> Floats:
+def coverage(camera: Camera, surface: Drawn, rays: int = 4) -> Floats:
     """The part (h, w) of each pixel that a surface covers: its silhouette."""
     scene = Scene(camera.seen(surface.corners(surface.points)).astype(np.float32))
     window = _window(camera, scene)
@@ -163,10 +165,14 @@ class _Model:
                 continue
             mine = (hit >= 0) & (self.layer[hit] == number)
             value = np.einsum("pc,pc->p", _three(weights[mine]), self.values[hit[mine]])
-            step = np.full(hit.shape, -1, np.int64)
-            step[mine] = np.searchsorted(layer.levels, value)
-            for one, other in ((step[:, :-1], step[:, 1:]), (step[:-1], step[1:])):
-                across = (one != other) & (one >= 0) & (other >= 0)
+            step, shown = np.full(hit.shape, -1, np.int64), np.zeros(hit.shape, np.float32)
+            step[mine], shown[mine] = np.searchsorted(layer.levels, value), value
+            least = _GRAIN * float(np.abs(layer.limits).max())
+            for one, other, a, b in (
+                (step[:, :-1], step[:, 1:], shown[:, :-1], shown[:, 1:]),
+                (step[:-1], step[1:], shown[:-1], shown[1:]),
+            ):
+                across = (one != other) & (one >= 0) & (other >= 0) & (np.abs(a - b) > least)
                 light[: one.shape[0], : one.shape[1]][across] *= 0.35
 
 

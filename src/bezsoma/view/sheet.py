@@ -15,14 +15,17 @@ from math import floor, log10
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Rectangle
 from matplotlib.ticker import MaxNLocator
+from PIL import Image
 
 from bezsoma import __version__
 from bezsoma.arrays import Floats
@@ -30,6 +33,7 @@ from bezsoma.errors import InputError, unknown
 from bezsoma.view.camera import Camera
 from bezsoma.view.layout import Layout
 
+Bytes = npt.NDArray[np.uint8]
 INK, PALE = "#22262b", "#7a828c"
 NOTICE = "Research software, not a medical device."
 _DPI = 100
@@ -61,6 +65,20 @@ class Outline:
 
 
 @dataclass(frozen=True, eq=False)
+class Strokes:
+    """Straight lines over a picture, and dots: a wireframe, a control net."""
+
+    segments: Floats
+    """(s, 2, 2) from where to where, in pixels of the panel."""
+    label: str
+    colour: str
+    width: float = 1.0
+    """In pixels of a panel that is 760 wide."""
+    dots: Floats | None = None
+    """(d, 2) in pixels of the panel."""
+
+
+@dataclass(frozen=True, eq=False)
 class Panel:
     """One picture on the page."""
 
@@ -70,6 +88,7 @@ class Panel:
     caption: str
     bar: Bar | None = None
     outlines: tuple[Outline, ...] = ()
+    strokes: tuple[Strokes, ...] = ()
 
 
 def colours(name: str, darkest: float = 0.06) -> Floats:
@@ -147,12 +166,13 @@ def _note(figure: Figure, width: int, height: int, unit: float) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Positive numbers (n,) one after the other; gaps where they are zero."""
+    """Positive numbers (n,), one after the other or over others (n,); gaps where they are zero."""
 
     label: str
     values: Floats
     colour: str
     dashed: bool = False
+    over: Floats | None = None
 
 
 def chart(
@@ -161,8 +181,12 @@ def chart(
     across: str,
     title: str,
     size: tuple[int, int],
+    up: str = "",
 ) -> Figure:
-    """A page with curves over their numbers 1, 2, ..., logarithmic; bands are named from x to x."""
+    """A page with curves over their numbers 1, 2, ..., logarithmic; bands are named from x to x.
+
+    Where curves are over numbers of their own, both axes are logarithmic.
+    """
     width, height = size
     unit = width / 800
     points = unit * 72 / _DPI
@@ -184,18 +208,122 @@ def chart(
         }
         axes.text(middle, 1.01, name, transform=top, **look)
     for curve in curves:
-        x = np.arange(1, len(curve.values) + 1)
+        x = np.arange(1, len(curve.values) + 1) if curve.over is None else curve.over
         shown = np.where(curve.values > 0, curve.values, np.nan)
         style = "--" if curve.dashed else "-"
         axes.plot(x, shown, style, marker="o", ms=5 * points, color=curve.colour, label=curve.label)
-    axes.set(yscale="log", xlim=(0.5, whole + 0.5))
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    if all(curve.over is None for curve in curves):
+        axes.set(yscale="log", xlim=(0.5, whole + 0.5))
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    else:
+        axes.set(xscale="log", yscale="log")
+        axes.grid(which="both", color="#e6e8ea", lw=0.8 * points, zorder=0)
     axes.set_xlabel(across, size=15 * points, color=INK)
-    axes.tick_params(labelsize=14 * points, color=INK, labelcolor=INK)
+    axes.set_ylabel(up, size=15 * points, color=INK)
+    axes.tick_params(which="both", labelsize=14 * points, color=INK, labelcolor=INK)
     axes.legend(fontsize=14 * points, frameon=False, labelcolor=INK)
     figure.suptitle(title, size=19 * points, color=INK)
     _note(figure, width, height, unit)
     return figure
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """Points (n, 2) of a graph, joined (`style` "-", "--", ":" or "" for not) or marked."""
+
+    points: Floats
+    label: str = ""
+    colour: str = INK
+    style: str = "-"
+    mark: str = ""
+    width: float = 1.6
+    above: int = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Tiles:
+    """Polygons (k, c, 2) of a graph, the later over the earlier; a colour each (k, 3 or 4)."""
+
+    corners: Floats
+    colours: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Graph:
+    """Curves with axes; or, as a `drawing`, lines and polygons without axes, to scale.
+
+    `logarithmic` holds "x", "y", both or neither; `words` are texts (x, y, text) beside points.
+    """
+
+    title: str
+    lines: Sequence[Line]
+    across: str = ""
+    up: str = ""
+    logarithmic: str = ""
+    tiles: Sequence[Tiles] = ()
+    words: Sequence[tuple[float, float, str]] = ()
+    drawing: bool = False
+
+
+def graphs(shown: Sequence[Graph], columns: int, title: str, size: tuple[int, int]) -> Figure:
+    """A page of graphs, row by row."""
+    width, height = size
+    figure = Figure(
+        figsize=(width / _DPI, height / _DPI), dpi=_DPI, facecolor="white", layout="constrained"
+    )
+    FigureCanvasAgg(figure)
+    rows = -(-len(shown) // columns)
+    places = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes, graph in zip(places, shown, strict=False):
+        _graph(axes, graph)
+    for axes in places[len(shown) :]:
+        axes.axis("off")
+    if title:
+        figure.suptitle(title, size=15, color=INK, weight="bold")
+    figure.supxlabel(f"bezsoma {__version__}.  {NOTICE}", x=0.995, ha="right", size=8.5, color=PALE)
+    return figure
+
+
+def _graph(axes: Axes, graph: Graph) -> None:
+    for tiles in graph.tiles:
+        faces = list(tiles.corners)
+        edges = tuple(map(tuple, tiles.colours))
+        axes.add_collection(PolyCollection(faces, facecolors=edges, edgecolors=edges, lw=0.2))
+    for line in graph.lines:
+        axes.plot(
+            *line.points.T,
+            linestyle=line.style or "none",
+            marker=line.mark or None,
+            ms=5,
+            lw=line.width,
+            color=line.colour,
+            label=line.label or None,
+            zorder=line.above,
+        )
+    for x, y, text in graph.words:
+        axes.annotate(text, (x, y), (4, 3), textcoords="offset points", size=8.5, color=INK)
+    axes.set_title(graph.title, size=12, color=INK)
+    if graph.drawing:
+        axes.autoscale_view()
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.axis("off")
+    else:
+        axes.set_xlabel(graph.across, size=11, color=INK)
+        axes.set_ylabel(graph.up, size=11, color=INK)
+        axes.set_xscale("log" if "x" in graph.logarithmic else "linear")
+        axes.set_yscale("log" if "y" in graph.logarithmic else "linear")
+        axes.grid(alpha=0.3)
+        _plain_numbers(axes)
+    if any(line.label for line in graph.lines):
+        axes.legend(fontsize=8.5, frameon=False, labelcolor=INK)
+
+
+def _plain_numbers(axes: Axes) -> None:
+    """Where a logarithmic axis spans less than two decades, 0.4 is read better than a power."""
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if axis.get_scale() == "log" and high < 100 * low:
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+            axis.set_minor_formatter(lambda value, _: f"{value:g}")
 
 
 def png(figure: Figure, title: str = "") -> bytes:
@@ -203,6 +331,37 @@ def png(figure: Figure, title: str = "") -> bytes:
     stream = io.BytesIO()
     software = f"bezsoma {__version__}. {NOTICE}"
     figure.savefig(stream, format="png", metadata={"Software": software, "Title": title or None})
+    return stream.getvalue()
+
+
+def pixels(figure: Figure) -> Bytes:
+    """The page as it looks on a screen: (h, w, 3) from 0 to 255."""
+    canvas: Any = figure.canvas
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba(), np.uint8)[..., :3].copy()
+
+
+def gif(frames: Sequence[Bytes], seconds: float) -> bytes:
+    """An animated GIF without end of frames (h, w, 3), each shown for so many seconds.
+
+    All frames share 256 colours, chosen from six of them: a palette of its own for each would
+    flicker.
+    """
+    chosen = [frames[k * (len(frames) - 1) // 5] for k in range(min(6, len(frames)))]
+    palette = Image.fromarray(np.concatenate(chosen)).quantize(256, Image.Quantize.MEDIANCUT)
+    images = [
+        Image.fromarray(each).quantize(palette=palette, dither=Image.Dither.NONE) for each in frames
+    ]
+    stream = io.BytesIO()
+    images[0].save(
+        stream,
+        format="GIF",
+        save_all=True,
+        append_images=images[1:],
+        duration=round(1000 * seconds),
+        loop=0,
+        comment=f"bezsoma {__version__}. {NOTICE}".encode(),
+    )
     return stream.getvalue()
 
 
@@ -229,7 +388,16 @@ def _draw(figure: Figure, layout: Layout, number: int, panel: Panel) -> None:
     for spine in axes.spines.values():
         spine.set(color="#d5d8dc", linewidth=1.2 * points)
     axes.set_title(panel.caption, size=19 * points, color=INK, pad=9 * points)
-    _outlines(axes, panel.outlines, points)
+    handles = [*_outlines(axes, panel.outlines, points), *_strokes(axes, panel.strokes, points)]
+    if handles:
+        axes.legend(
+            handles=handles,
+            loc="lower right",
+            fontsize=14 * points,
+            frameon=False,
+            labelcolor=INK,
+            borderaxespad=1.2,
+        )
     _sides(axes, panel.camera, points)
     _scale_bar(axes, panel.camera, points)
     if panel.bar is not None:
@@ -315,8 +483,8 @@ def _scale_bar(axes: Axes, camera: Camera, points: float) -> None:
     )
 
 
-def _outlines(axes: Axes, outlines: Sequence[Outline], points: float) -> None:
-    """Silhouettes as lines through half covered pixels, with a legend."""
+def _outlines(axes: Axes, outlines: Sequence[Outline], points: float) -> list[Line2D]:
+    """Silhouettes as lines through half covered pixels; what stands for them in a legend."""
     handles = []
     for outline in outlines:
         rows, columns = outline.coverage.shape
@@ -334,15 +502,27 @@ def _outlines(axes: Axes, outlines: Sequence[Outline], points: float) -> None:
             zorder=4 + outline.dashed,
         )
         handles.append(Line2D([], [], color=outline.colour, ls=style, lw=wide, label=outline.label))
-    if handles:
-        axes.legend(
-            handles=handles,
-            loc="lower right",
-            fontsize=14 * points,
-            frameon=False,
-            labelcolor=INK,
-            borderaxespad=1.2,
+    return handles
+
+
+def _strokes(axes: Axes, strokes: Sequence[Strokes], points: float) -> list[Line2D]:
+    """Lines and dots; what stands for them in a legend."""
+    handles = []
+    for each in strokes:
+        wide = each.width * points
+        lines = LineCollection(
+            list(each.segments), colors=each.colour, linewidths=wide, capstyle="round", zorder=3
         )
+        axes.add_collection(lines, autolim=False)
+        marker = None if each.dots is None else "o"
+        if each.dots is not None:
+            axes.plot(*each.dots.T, "o", ms=3.4 * points, color=each.colour, mew=0, zorder=3.5)
+        handles.append(
+            Line2D(
+                [], [], color=each.colour, lw=wide, marker=marker, ms=5 * points, label=each.label
+            )
+        )
+    return handles
 
 
 def _colour_bar(figure: Figure, layout: Layout, corner: tuple[int, int], bar: Bar) -> None:
@@ -367,7 +547,9 @@ def _colour_bar(figure: Figure, layout: Layout, corner: tuple[int, int], bar: Ba
         [f"{tick:.3g}" for tick in sorted([*bar.levels.tolist(), *ends])],
     )
     axes.vlines(bar.levels, 0, 1, color="black", alpha=0.55, lw=0.9 * points)
-    axes.tick_params(labelsize=14 * points, color=INK, labelcolor=INK, length=4 * points)
+    axes.tick_params(
+        labelsize=14 * points, color=INK, labelcolor=INK, length=4 * points, pad=3.2 * points
+    )
     axes.set_xlabel(bar.label, size=15 * points, color=INK, labelpad=3.5 * points)
     for spine in axes.spines.values():
         spine.set(color=INK, linewidth=0.8 * points)

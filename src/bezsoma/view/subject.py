@@ -17,9 +17,11 @@ from bezsoma.view.surfaces import MOST_PARTS, Surface, displaced, parts_for
 
 Named = str | tuple[str, ...] | None
 _TRIANGLES = 60_000
-"""So many are cut at least, for the shade to be smooth."""
-_MOST_TRIANGLES = 1_500_000
-"""More do not show at any size of picture that is allowed, and cost memory."""
+"""So many are cut, or one for every few pixels if that is less, for the shade to be smooth."""
+_PIXELS = 12
+"""Pixels for such a triangle."""
+_MOST_TRIANGLES = 200_000
+"""All facets are cut alike, and more for the sake of a few of them would cost seconds."""
 _QUARTER = 0.25
 """By how much of a pixel the triangles may stray from the polynomial."""
 CREASE, SKIN_CREASE = 0.7, 2.0
@@ -33,6 +35,8 @@ class Subject:
     mesh: TetMesh
     facets: Ints
     rest: Ints
+    veil: Ints
+    """Facets that are seen through."""
     displacement: Field | None
     """In mm."""
     magnified: float
@@ -41,7 +45,13 @@ class Subject:
 
     @classmethod
     def of(
-        cls, mesh: TetMesh, surface: Named, rest: bool, displacement: Field | None, magnified: float
+        cls,
+        mesh: TetMesh,
+        surface: Named,
+        rest: bool,
+        displacement: Field | None,
+        magnified: float,
+        translucent: Named = None,
     ) -> Subject:
         """The subject of these facets, once all of it is checked."""
         if displacement is not None:
@@ -49,16 +59,22 @@ class Subject:
         if not np.isfinite(magnified):
             raise InputError(f"a displacement cannot be drawn {magnified} times; give a number")
         facets = facets_named(mesh, surface)
-        others = _without(mesh.boundary, facets) if rest else facets[:0]
+        veil = facets[:0] if translucent is None else facets_named(mesh, translucent)
+        facets = _without(facets, veil)
+        if not len(facets):
+            raise InputError(
+                f"all that would be seen is translucent ({translucent!r}); name a surface behind it"
+            )
+        others = _without(mesh.boundary, np.concatenate([facets, veil])) if rest else facets[:0]
         crease = SKIN_CREASE if is_skin(surface) else CREASE
-        return cls(mesh, facets, others, displacement, magnified, crease)
+        return cls(mesh, facets, others, veil, displacement, magnified, crease)
 
     def points(self) -> Floats:
         """Points (p, 3) mm that a camera must show: corners and controls, before and after.
 
         A displaced patch lies in the convex hull of its controls, so nothing sticks out.
         """
-        every = np.concatenate([self.facets, self.rest])
+        every = np.concatenate([self.facets, self.rest, self.veil])
         corners = self.mesh.points[every]
         if self.displacement is None:
             return np.asarray(corners.reshape(-1, 3))
@@ -69,8 +85,9 @@ class Subject:
 
     def parts(self, scale: float) -> int:
         """Into how many parts to cut the edges of facets at `scale` pixels per mm."""
-        number = len(self.facets) + len(self.rest)
-        wanted = ceil(sqrt(_TRIANGLES / number))
+        number = len(self.facets) + len(self.rest) + len(self.veil)
+        across = np.sort(np.ptp(self.mesh.points, axis=0))[1:] * scale
+        wanted = ceil(sqrt(min(_TRIANGLES, across.prod() / _PIXELS) / number))
         most = min(MOST_PARTS, int(sqrt(_MOST_TRIANGLES / number)))
         if self.displacement is not None:
             degree = degree_of(self.displacement)
@@ -82,16 +99,27 @@ class Subject:
 
     def surfaces(self, scale: float, moved: bool) -> tuple[Surface, Surface | None]:
         """The surface that matters and the rest, before or after the displacement."""
+        front, back, _ = self.every_surface(scale, moved)
+        return front, back
+
+    def every_surface(
+        self, scale: float, moved: bool
+    ) -> tuple[Surface, Surface | None, Surface | None]:
+        """The surface that matters, the rest, and what is seen through, before or after."""
         parts = self.parts(scale)
         field = self.displacement if moved else None
-        first, second = (
+        first, second, third = (
             displaced(self.mesh, facets, field, parts, crease, self.magnified)
             if len(facets)
             else None
-            for facets, crease in ((self.facets, self.crease), (self.rest, CREASE))
+            for facets, crease in (
+                (self.facets, self.crease),
+                (self.rest, CREASE),
+                (self.veil, SKIN_CREASE),
+            )
         )
         assert first is not None  # a named surface of a mesh is never empty
-        return first, second
+        return first, second, third
 
 
 def is_skin(surface: Named) -> bool:

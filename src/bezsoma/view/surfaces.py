@@ -20,10 +20,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from bezsoma.arrays import Bools, Floats, Ints, T
-from bezsoma.bernstein import derivatives, domain_points, shifts, trace
+from bezsoma.bernstein import derivatives, domain_points, trace
 from bezsoma.mesh import Field, TetMesh
 from bezsoma.mesh.topology import cross, packed
-from bezsoma.view.lattice import SIDES, small_triangles
+from bezsoma.view.chords import bends, lattice_error
+from bezsoma.view.lattice import SIDES, corners_of, small_triangles
 from bezsoma.view.restriction import controls_on, degree_of, values_at
 
 MOST_PARTS = 16
@@ -51,14 +52,23 @@ class Surface:
     @cached_property
     def rims(self) -> Bools:
         """(r, 3) whether the edge opposite each triangle's corner lies on an edge of its facet."""
-        off = self.bary[small_triangles(self.parts)] > 0
-        on = np.stack([~off[:, [(k + 1) % 3, (k + 2) % 3]].any(axis=1) for k in range(3)], axis=1)
-        return np.tile(on.any(axis=2), (len(self.facets), 1))
+        return np.tile(on_edges(self.parts).any(axis=2), (len(self.points), 1))
 
     def corners(self, samples: npt.NDArray[T]) -> npt.NDArray[T]:
         """Values (r, 3, ...) at the corners of the small triangles, from those at samples."""
-        split = samples[:, small_triangles(self.parts)]
-        return split.reshape(-1, 3, *samples.shape[2:])
+        return corners_of(samples, self.parts)
+
+
+def on_edges(parts: int) -> Bools:
+    """Whether the side opposite corner k of each small triangle is on edge j of its facet.
+
+    (parts**2, 3, 3) [triangle, k, j]; edge j of the facet is the one opposite its corner j.
+
+    >>> on_edges(1)[0].tolist() == np.eye(3, dtype=bool).tolist()
+    True
+    """
+    off = domain_points(parts, 2)[small_triangles(parts)] > 0
+    return np.stack([~off[:, [(k + 1) % 3, (k + 2) % 3]].any(axis=1) for k in range(3)], axis=1)
 
 
 def displaced(
@@ -100,31 +110,15 @@ def displaced(
 def parts_for(controls: Floats, degree: int, tolerance: float) -> int:
     """Into how many parts each edge is cut so that the triangles err by less than `tolerance` mm.
 
-    Linear pieces with legs 1/s err by at most (M_uu + 2 M_uv + M_vv) / (8 s**2), M the largest
-    second derivatives (Filip, Magedson and Markot 1986, doi:10.1016/0167-8396(86)90005-1);
-    those are bounded by n (n - 1) times the largest second differences of the controls
-    (f, m, 3). For x**2 over one facet the bound is attained:
+    All facets alike, for displacements with the controls (f, m, 3); at most `MOST_PARTS`. For
+    x**2 over one facet the bound of `chords` is attained:
 
     >>> controls = np.zeros((1, 6, 3)); controls[0, 3, 2] = 1.0  # u**2, bends by 1/4 in all
     >>> parts_for(controls, 2, 0.25), parts_for(controls, 2, 0.0156251)
     (1, 4)
     """
-    if degree < 2:
-        return 1
-    first = [_differences(controls, degree, i) for i in (1, 2)]
-    pairs = ((0, 1, 1.0), (0, 2, 2.0), (1, 2, 1.0))
-    bound = sum(
-        weight * np.linalg.norm(_differences(first[i], degree - 1, j), axis=2).max(initial=0.0)
-        for i, j, weight in pairs
-    )
-    wanted = np.sqrt(degree * (degree - 1) * bound / (8 * tolerance))
-    return int(min(MOST_PARTS, max(1, ceil(wanted))))
-
-
-def _differences(controls: Floats, degree: int, towards: int) -> Floats:
-    """Differences (f, m', 3) of controls from corner 0 towards another: of a derivative, over n."""
-    step = shifts(degree, 2)
-    return controls[:, step[:, towards]] - controls[:, step[:, 0]]
+    worst = lattice_error(bends(controls, degree)).max(initial=0.0)
+    return int(min(MOST_PARTS, max(1, ceil(np.sqrt(worst / tolerance)))))
 
 
 def _sides(corners: Floats) -> Floats:

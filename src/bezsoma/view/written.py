@@ -18,17 +18,28 @@ def written(path: str | Path, content: bytes, overwrite: bool = False) -> Path:
     ...     target.read_bytes(), [entry.name for entry in Path(folder).iterdir()]
     (b'abc', ['a.bin'])
     """
-    target = Path(path)
-    if target.is_dir():
-        raise InputError(f"{str(target)!r} is a folder; give the name of a file in it")
-    if target.exists() and not overwrite:
-        raise InputError(f"{str(target)!r} exists; say overwrite=True to replace it")
-    if not target.parent.is_dir():
-        raise InputError(f"there is no folder {str(target.parent)!r}; make it first")
+    target = vacant(path, overwrite)
     try:
         write_whole(target, lambda part: part.write_bytes(content))
     except OSError as error:
         raise InputError(
             f"cannot write {str(target)!r} ({error.strerror}); make room or choose another folder"
         ) from error
+    return target
+
+
+def vacant(path: str | Path, overwrite: bool = False, ending: str = "") -> Path:
+    """The path, if a file may be written there: asked before the work as well as after it.
+
+    `ending` is what its name has to end in, so that it says what the file holds.
+    """
+    target = Path(path)
+    if target.is_dir():
+        raise InputError(f"{str(target)!r} is a folder; give the name of a file in it")
+    if not target.name.lower().endswith(ending):
+        raise InputError(f"{str(target)!r} would hold a {ending[1:].upper()}; end it in {ending}")
+    if target.exists() and not overwrite:
+        raise InputError(f"{str(target)!r} exists; say overwrite=True to replace it")
+    if not target.parent.is_dir():
+        raise InputError(f"there is no folder {str(target.parent)!r}; make it first")
     return target
