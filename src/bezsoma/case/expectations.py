@@ -13,20 +13,23 @@ from bezsoma.case.build import names_missing
 from bezsoma.case.faults import Fault
 from bezsoma.case.quantities import Measured, complaint
 from bezsoma.case.reading import Case
-from bezsoma.case.schema import Expect, Probe
+from bezsoma.case.refining import places_missing
+from bezsoma.case.schema import Expect, Probe, Refine
 from bezsoma.errors import InputError
 from bezsoma.mesh.locator import Locator
 from bezsoma.mesh.tets import TetMesh
 
 
-def probe_points(case: Case, mesh: TetMesh) -> dict[str, Floats]:
+def probe_points(case: Case, mesh: TetMesh, refine: Refine | None = None) -> dict[str, Floats]:
     """Name -> point (3,), mm, of each probe: a vertex, a point inside, or one of its surface.
 
     Everything that the case asks of its mesh and that the mesh does not have is reported here in
-    one go, before anything is solved: names, quantities that are expected, probes.
+    one go, before anything is solved: names, quantities that are expected, probes, and where to
+    `refine`.
     """
     locator, points = Locator(mesh), {}
     found = [*names_missing(case, mesh), *_quantities_missing(case, mesh)]
+    found += places_missing(case.file, refine, mesh)
     unplaced = {fault.path[:2] for fault in found}
     for number, probe in enumerate(case.file.probe):
         if ("probe", number) in unplaced:

@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from bezsoma.refinement.levels import table
+
 MEANINGS = {
     "README.txt": "this text",
     "case.toml": "the case as it was, byte for byte",
@@ -25,6 +27,8 @@ def readme(summary: Mapping[str, Any]) -> str:
         f"{summary['notice']} Do not base treatment on it.",
         _what(summary),
         motion_table(summary["probes"]),
+        error_told(summary),
+        levels_table(summary),
         _expectations(summary["expectations"]),
         "\n".join(f"Beware: {warning}." for warning in summary["warnings"]),
         _files(summary["files"]),
@@ -48,13 +52,63 @@ def motion_table(probes: Mapping[str, Mapping[str, Any]]) -> str:
     if not probes:
         return ""
     wide = max(12, *(len(name) for name in probes))
-    lines = [f"{'motion, mm':<{wide}}" + "".join(f"{axis:>8}" for axis in "xyz") + f"{'size':>8}"]
+    judged = any("error" in probe for probe in probes.values())
+    heads = [*"xyz", "size", *(["error"] if judged else [])]
+    lines = [f"{'motion, mm':<{wide}}" + "".join(f"{head:>8}" for head in heads)]
     for name, probe in probes.items():
         numbers = [*probe["displacement"], probe["size"]]
-        lines.append(
-            f"{name:<{wide}}" + "".join(f"{round(number, 2) + 0.0:8.2f}" for number in numbers)
-        )
+        entries = [f"{round(number, 2) + 0.0:8.2f}" for number in numbers]
+        if "error" in probe:
+            entries.append(f"{probe['error']:8.2g}")
+        lines.append(f"{name:<{wide}}" + "".join(entries))
     return "\n".join([*lines, f"({DIRECTIONS})"])
+
+
+def error_told(summary: Mapping[str, Any]) -> str:
+    """How large the error is believed to be, and of what; empty where nothing was asked.
+
+    >>> print(error_told({"error": {"energy": 0.034, "probes": {}, "unknowns": 5, "seconds": 2.0}}))
+    Estimated error: 3.4 % in the energy norm (2.0 s).
+
+    Across the way that a probe moved the error may be many times that along it: so it is said
+    which of them the table has.
+    """
+    error = summary.get("error")
+    if error is None:
+        return ""
+    if "left_out" in error:
+        return f"Error: not estimated; {error['left_out']}."
+    told = f"Estimated error: {100 * error['energy']:.3g} % in the energy norm"
+    radii = {found[0]["radius"] for found in error["probes"].values()}
+    if radii:
+        told += (
+            f"; in the table, mm, that of the mean displacement within {min(radii):g} mm of each "
+            f"probe, {_along(error['components'])}"
+        )
+    return f"{told} ({error['seconds']:.1f} s)."
+
+
+def _along(components: str | None) -> str:
+    """Of what in a displacement the error is."""
+    if components is None:
+        return "along the way that it moved; components in [error] asks for others"
+    return f"of {components} together" if len(components) > 1 else f"of {components}"
+
+
+def levels_table(summary: Mapping[str, Any]) -> str:
+    """The levels of a refinement and why it ended; empty where there was none."""
+    if "refinement" not in summary:
+        return ""
+    found = summary["refinement"]
+    levels = table(found["levels"])
+    told = f"Estimated errors, level by level:\n\n{levels}\n\nIt ended: {found['why']}."
+    radii = {probe["error_radius"] for probe in summary["probes"].values() if "error" in probe}
+    if radii:
+        told += (
+            f"\nThe errors at probes are those of the mean displacement within {min(radii):g} mm, "
+            "of xyz together."
+        )
+    return told
 
 
 def _what(summary: Mapping[str, Any]) -> str:

@@ -11,22 +11,25 @@ from typing import Any
 import numpy as np
 
 from bezsoma.arrays import Floats
-from bezsoma.case.advice import in_case
+from bezsoma.case.advice import as_written, in_case
 from bezsoma.case.build import body_of
+from bezsoma.case.estimating import estimated
 from bezsoma.case.expectations import checked, motions, probe_points
 from bezsoma.case.quantities import Measured
 from bezsoma.case.reading import Case, read_case
+from bezsoma.case.refining import solved, with_tolerance
 from bezsoma.case.sources import mesh_of
 from bezsoma.case.writing import write_results
 from bezsoma.errors import InputError
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.nouns import described, path_given
 from bezsoma.mesh.tets import TetMesh
+from bezsoma.refinement.levels import Level, Refined
+from bezsoma.refinement.singular import singularities
 from bezsoma.results import Results, destination
 from bezsoma.results.archive import NOTICE
 from bezsoma.results.folder import FORMAT
 from bezsoma.solvers.solution import Solution
-from bezsoma.solvers.solve import solve
 
 Progress = Callable[[str, float | None, str], None]
 """Called with a stage, how much of it is done (0 to 1, None where unknown) and a note."""
@@ -57,40 +60,39 @@ def run_case(
     *,
     overwrite: bool = False,
     degree: int | None = None,
+    tolerance: float | None = None,
     progress: Progress = silent,
 ) -> Results:
     """Solve a case and leave its results folder, whole or not at all; gives what it holds.
 
     `case` is one that was read, or the path of its file. `degree` takes the place of the one in
-    the file. The folder is looked at first, then the mesh, names, probes and expectations; only
-    then is anything solved. Whether the expectations were met stands in `summary["expectations"]`.
+    the file, `tolerance` [mm] that of the one in its table [refine]. The folder is looked at first,
+    then the mesh, names, probes and expectations; only then is anything solved. Whether the
+    expectations were met stands in `summary["expectations"]`, whether the tolerance was in
+    `summary["refinement"]`.
     """
     case = _case(case)
     place = destination(path_given(folder, "run_case(case, folder)"), overwrite=overwrite)
     start = perf_counter()
     progress("mesh", None, "reading the mesh and checking the case")
     mesh = mesh_of(case)
-    probes = probe_points(case, mesh)
+    table = with_tolerance(case, tolerance)
+    probes = probe_points(case, mesh, table)
     body = body_of(case, mesh, case.file.degree if degree is None else degree)
-    mesh = body.mesh
     place.check_room(_size(body))
-    table = case.file.solver
     with in_case(case.path.name):
-        solution = solve(
-            body,
-            solver=table.method,
-            rtol=table.rtol,
-            threads=table.threads,
-            steps=table.steps,
-            method=table.iteration,
-            exactness=table.exactness,
-            progress=progress,
-        )
-    summary = summary_of(case, solution, probes)
+        solution, levels = solved(case, body, table, probes, progress)
+    if levels is not None:
+        place.check_room(_size(solution.body))
+    summary = summary_of(case, solution, probes, levels)
+    if levels is None:
+        with_error(summary, estimated(case, solution, probes, progress))
+    else:
+        with_last_level(summary, levels.levels[-1], case.file.error.radius)
     summary["seconds"] = perf_counter() - start
     with place.filling() as partial:
         write_results(partial, case, solution, summary, progress)
-    pressure = solution.pressure
+    mesh, pressure = solution.body.mesh, solution.pressure
     return Results(place.folder, mesh, solution.displacement, summary, case.text, pressure)
 
 
@@ -106,7 +108,9 @@ def _case(given: Any) -> Case:
     )
 
 
-def summary_of(case: Case, solution: Solution, probes: dict[str, Floats]) -> dict[str, Any]:
+def summary_of(
+    case: Case, solution: Solution, probes: dict[str, Floats], levels: Refined | None = None
+) -> dict[str, Any]:
     """What summary.json says of a solution; lengths mm, forces N, moments and energy N mm."""
     measured = Measured(solution, probes)
     mesh, degree = solution.body.mesh, solution.body.degree
@@ -122,9 +126,37 @@ def summary_of(case: Case, solution: Solution, probes: dict[str, Floats]) -> dic
         "regions": list(mesh.regions),
         "surfaces": {name: len(facets) for name, facets in mesh.surfaces.items()},
         "probes": probed,
-        "warnings": [*warnings(mesh, probed), *advice(solution)],
+        **({} if levels is None else {"refinement": levels.summary()}),
+        "warnings": [
+            each + as_written(each) for each in dict.fromkeys(_said(solution, probed, levels))
+        ],
         "expectations": checked(case, degree, measured),
     }
+
+
+def _said(
+    solution: Solution, probed: Mapping[str, Mapping[str, Any]], levels: Refined | None
+) -> Iterator[str]:
+    """All warnings, which may say a thing twice."""
+    yield from warnings(solution.body.mesh, probed)
+    yield from advice(solution)
+    yield from singularities(solution)
+    yield from doubts(levels)
+
+
+def with_error(summary: dict[str, Any], error: dict[str, Any]) -> None:
+    """Put what is known of the error beside the values: of each probe that of its goals, mm."""
+    summary["error"] = error
+    for name, found in error.get("probes", {}).items():
+        size = float(np.linalg.norm([each["error"] for each in found]))
+        summary["probes"][name].update(error=size, error_radius=found[0]["radius"])
+
+
+def with_last_level(summary: dict[str, Any], last: Level, radius: float) -> None:
+    """Put the errors of the last level of a refinement beside the values, mm."""
+    for found in last.at:
+        if found.name in summary["probes"]:
+            summary["probes"][found.name].update(error=found.error, error_radius=radius)
 
 
 def warnings(mesh: TetMesh, probed: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
@@ -146,6 +178,15 @@ def advice(solution: Solution) -> Iterator[str]:
             f"all four vertices of {solution.held_tets} tets are prescribed, and what can move "
             "there is stiffened by its pressure; split_held_tets = true cuts them in four"
         )
+
+
+def doubts(levels: Refined | None) -> Iterator[str]:
+    """What was not reached, and what makes an estimate meaningless."""
+    if levels is None:
+        return
+    if not levels.reached:
+        yield f"refinement ended short of what was asked for: {levels.why}"
+    yield from levels.warnings
 
 
 def _size(body: Body) -> int:

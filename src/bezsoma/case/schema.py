@@ -24,6 +24,7 @@ import bezsoma.mechanics.materials
 from bezsoma.case.laws import LAW_NAMES, law_of
 from bezsoma.errors import unknown
 from bezsoma.mechanics.polynomial import Polynomial
+from bezsoma.refinement.loop import MOST_UNKNOWNS
 from bezsoma.solvers.load_steps import steps_checked
 from bezsoma.view.camera import VIEWS
 
@@ -310,6 +311,31 @@ class Solver(Table):
     threads: Annotated[int, Field(ge=0, le=1024, description="0: all cores")] | None = None
 
 
+class Refine(Table):
+    """Refine the mesh, or raise the degree, until the error is small enough; see `refined`."""
+
+    tolerance: Positive | None = None
+    """The largest error of a displacement in `at`, mm."""
+    at: Names | None = None
+    """Probes and surfaces; all probes where not given, else the surface skin."""
+    energy: Positive | None = None
+    """The largest relative error in the energy norm."""
+    by: Literal["mesh", "degree", "both"] = "mesh"
+    most_unknowns: Annotated[int, Field(ge=1)] = MOST_UNKNOWNS
+    most_seconds: Positive | None = None
+
+
+class Error(Table):
+    """How far the answer is from the truth: see `bezsoma.refinement.estimates`."""
+
+    estimate: bool | None = None
+    """Whether it is estimated; where not given, if that takes no more than a million unknowns."""
+    radius: Positive = 3.0
+    """Of the patch around a probe over which the displacement is averaged, mm; [refine] too."""
+    components: Components | None = None
+    """Of the displacement of a probe; where not given, along the way that it moved."""
+
+
 class Probe(Table):
     """A point to look at: coordinates (with `on`, the nearest point of that surface), a vertex."""
 
@@ -390,6 +416,8 @@ class CaseFile(Table):
         Annotated[Traction | Pressure | BodyForce | PointForce, Field(discriminator="type")]
     ] = []
     solver: Solver = Solver()
+    refine: Refine | None = None
+    error: Error = Error()
     probe: list[Probe] = []
     expect: list[Expect] = []
     output: Output = Output()
