@@ -1,61 +1,47 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The demo: a head made by formula, its jaw moved 6 mm forward, as a case like any other.
+"""The demo: the whole way from a CT to a predicted face, of a head that is made by formula.
 
-The case is a text, so that the results folder holds a file that a newcomer can change and run.
+Nothing here is special to it: a CT is written to a file, and what follows is what `bezsoma model`
+and `bezsoma run` do.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from bezsoma.case.reading import Case, case_from
+from bezsoma.case.reading import read_case
 from bezsoma.case.running import Progress, run_case, silent
-from bezsoma.imaging.phantom import landmarks
+from bezsoma.errors import InputError
+from bezsoma.imaging.around import head_around
+from bezsoma.imaging.domain import domain
+from bezsoma.imaging.head_ct import head_ct
+from bezsoma.imaging.nrrd import write_volume
+from bezsoma.model import ModelSettings, run_model
 from bezsoma.results import Results
+from bezsoma.results.folder import written
+from bezsoma.view.named import head_picture
 
-Size = Literal["small", "medium", "large"]
+Size = Literal["small", "large"]
+CT, MODEL, PREDICTION, HEAD = "ct.nrrd", "model", "prediction", "head.png"
+OURS = {CT, MODEL, PREDICTION, HEAD}
+"""All that the folder of a demo holds."""
 
-TEXT = """\
-# A head made by formula; its lower jaw is moved 6 mm forward. Lengths mm, moduli MPa.
-# Change a number and run it again: bezsoma run case.toml -o another-folder
-title = "Demo: the lower jaw moves 6 mm forward"
-degree = 3
 
-[mesh]
-phantom = "{size}"
+@dataclass(frozen=True)
+class Head:
+    """How fine a demo is: voxels in mm, tets, and the gap in mm of joints and teeth.
 
-[materials.tissue]
-E = 0.015     # MPa: soft tissue of the face
-nu = 0.45
+    A gap under a voxel would join mandible and skull.
+    """
 
-[[support]]   # the skull, the back of the jaw and the deep side of the neck stay where they are
-type = "fixed"
-on = ["skull", "rami", "neck"]
+    voxel: float
+    tets: int
+    gap: float
 
-[[support]]   # x to the patient's left, y to the back, z up: forward is -y
-type = "moved"
-on = "jaw"
-translation = [0, -6, 0]
 
-[[join]]      # where the moved jaw meets the rami, the step is spread over 10 mm
-type = "graded"
-over = "rami"
-to = "jaw"
-band = 10
-
-{probes}[output]
-pictures = ["three-quarter", "front"]
-"""
-PROBE = """\
-[[probe]]{remark}
-name = "{name}"
-point = [{x:.3g}, {y:.4g}, {z:.3g}]
-on = "skin"
-
-"""
-LOOKED_AT = ("chin", "fold", "lower lip", "upper lip", "nose tip")
-REMARK = "     # where to look: the point of the skin nearest to this one"
+HEADS = {"small": Head(2.0, 20_000, 3.0), "large": Head(1.5, 60_000, 2.5)}
 
 
 def run_demo(
@@ -66,24 +52,44 @@ def run_demo(
     degree: int = 3,
     progress: Progress = silent,
 ) -> Results:
-    """Solve the demo at one of three sizes and leave its results folder."""
-    return run_case(demo_case(size), folder, overwrite=overwrite, degree=degree, progress=progress)
+    """Go the whole way at one of two sizes and leave a folder: the CT, model, prediction, head.png.
+
+    Gives the results of the prediction. What an earlier demo left there goes on, or is replaced
+    with `overwrite`.
+    """
+    place, head = Path(folder), HEADS[size]
+    _check(place, overwrite)
+    with written(place):
+        place.mkdir(exist_ok=True)
+    progress("ct", None, "of a head, by formula")
+    ct = head_ct((head.voxel,) * 3, joint=head.gap, bite=head.gap).volume
+    write_volume(place / CT, ct.values, ct.frame, overwrite=True)
+    settings = ModelSettings(tets=head.tets, degree=degree, forward=6.0)
+    model = run_model(place / CT, place / MODEL, settings, overwrite=overwrite, progress=progress)
+    case = read_case(model.case)
+    results = run_case(case, place / PREDICTION, overwrite=overwrite, progress=progress)
+    progress("head", None, "drawing it with the predicted part in place")
+    labels = model.labels
+    around = head_around(labels, domain(labels, settings.domain))
+    title = f"{case.title} (degree {degree})"
+    head_picture(place / HEAD, results.mesh, results.displacement, around, title=title,
+                 overwrite=True)  # fmt: skip
+    return results
 
 
-def demo_case(size: Size) -> Case:
-    """The demo as a case."""
-    return case_from(Path("demo.toml"), demo_text(size))
-
-
-def demo_text(size: Size) -> str:
-    """The text of the case, its probes at landmarks of the phantom."""
-    places = landmarks()
-    probes = [
-        PROBE.format(
-            name=name.replace(" ", "_"),
-            remark="" if number else REMARK,
-            **dict(zip("xyz", places[name], strict=True)),
+def _check(place: Path, overwrite: bool) -> None:
+    """Refuses a folder that holds what no demo wrote, or a demo, unless it may be replaced."""
+    if not place.parent.is_dir():
+        raise InputError(f"there is no folder {str(place.parent)!r}; make it first")
+    if not place.exists():
+        return
+    if not place.is_dir() or {path.name for path in place.iterdir()} - OURS:
+        raise InputError(
+            f"{str(place)!r} holds what BezSoma did not write and will not touch; choose another "
+            "folder with -o"
         )
-        for number, name in enumerate(LOOKED_AT)
-    ]
-    return TEXT.format(size=size, probes="".join(probes))
+    if any(place.iterdir()) and not overwrite:
+        raise InputError(
+            f"{str(place)!r} holds a demo already; choose another folder with -o, or replace it "
+            "with --overwrite"
+        )

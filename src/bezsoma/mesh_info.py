@@ -4,49 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations
 
 import numpy as np
 
 from bezsoma.arrays import Floats
+from bezsoma.mesh.quality import dihedral_angles, mean_ratios
 from bezsoma.mesh.tets import TetMesh
 
 PERCENTILES = (0, 1, 50, 100)
-
-
-def dihedral_angles(mesh: TetMesh) -> Floats:
-    """The six angles between the faces of each tet (t, 6), degrees.
-
-    The gradients of the barycentric coordinates point inward, normal to the faces, so the angle
-    between the faces i and j has cos = -g_i . g_j / (|g_i| |g_j|). Small or near 180 is bad: both
-    the conditioning of the matrices and the error grow. A regular tet has arccos(1/3) six times:
-
-    >>> p = [[0, 0, 0], [1, 1, 0], [1, 0, 1], [0, 1, 1]]
-    >>> bool(np.allclose(np.cos(np.radians(dihedral_angles(TetMesh(p, [[0, 1, 2, 3]])))), 1 / 3))
-    True
-    """
-    unit = mesh.gradients / np.linalg.norm(mesh.gradients, axis=2, keepdims=True)
-    pairs = [-np.einsum("td,td->t", unit[:, i], unit[:, j]) for i, j in combinations(range(4), 2)]
-    angles: Floats = np.degrees(np.arccos(np.clip(np.stack(pairs, axis=1), -1, 1)))
-    return angles
-
-
-def mean_ratios(mesh: TetMesh) -> Floats:
-    """The mean ratio of each tet (t,): 12 (3 V)^(2/3) / (sum of the squared edges); best is 1.
-
-    Liu and Joe, Relationship between tetrahedron shape measures, BIT 34 (1994), eq. 4
-    (doi:10.1007/BF01955874). It falls with every way of becoming flat, and is 1 for a regular tet:
-
-    >>> p = [[0, 0, 0], [1, 1, 0], [1, 0, 1], [0, 1, 1]]
-    >>> bool(np.isclose(mean_ratios(TetMesh(p, [[0, 1, 2, 3]]))[0], 1))
-    True
-    """
-    corners = mesh.points[mesh.tets]
-    squares = sum(
-        ((corners[:, i] - corners[:, j]) ** 2).sum(axis=1) for i, j in combinations(range(4), 2)
-    )
-    ratios: Floats = 12 * (3 * mesh.volumes) ** (2 / 3) / squares
-    return ratios
 
 
 def mesh_report(mesh: TetMesh) -> Iterator[str]:

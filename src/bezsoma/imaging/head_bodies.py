@@ -56,7 +56,7 @@ SKIN: list[Body] = [
     *both(Ellipsoid((12, -98, 27), (8, 9, 8)), Ellipsoid((77, 10, 40), (7, 17, 28))),
 ]
 SKIN_OF_JAW: list[Body] = [
-    Ellipsoid((0, -48, -22), (54, 48, 32)),
+    Ellipsoid((0, -48, -22), (54, 48, 37)),
     Ellipsoid((0, -84, -32), (20, 14, 16)),
     Rod((-16, -91, -7), (16, -91, -7), 6.5, 6.5),
 ]
@@ -103,9 +103,14 @@ MOUTH: list[Body] = [Ellipsoid((0, -78, -7), (20, 34, 6)), Rod((0, -60, -8), (0,
 
 
 def fossae(gap: float) -> list[Body]:
-    """The hollows over the condyles, `gap` mm above them, wider than they are."""
+    """The hollows over the condyles, `gap` mm above them, wider than they are, and open below.
+
+    Without the rods the floor of the skull would stand around the rami below the condyles.
+    """
     x, y, z = CONDYLE
-    return both(Ellipsoid((x, y, z + 6 + gap - 9), (18, 14, 9)))
+    return both(
+        Ellipsoid((x, y, z + 6 + gap - 9), (18, 14, 9)), Rod((45, -16, 20), (x, y, 20), 10, 10)
+    )
 
 
 def teeth(tip: float, root: float) -> list[Body]:

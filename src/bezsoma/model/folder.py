@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The folder of a model: what stage was done with what, so that a run goes on where one ended.
+
+A stage fills a hidden folder, whose files then take their places one after the other; last,
+`model.json` tells of them. Whatever stops a run leaves the stages before it and no part of the one
+under way.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from bezsoma import __version__
+from bezsoma.errors import InputError
+from bezsoma.mesh.whole import write_whole
+from bezsoma.results.folder import written
+
+RECORD = "model.json"
+FORMAT = "bezsoma model 1"
+"""The mark in model.json by which a folder is known to be one of ours."""
+ROOM = 300_000_000
+"""Bytes that have to be free before a run starts."""
+
+
+@dataclass(eq=False)
+class ModelFolder:
+    """A folder for one model, and what its record says. `overwrite`: stages may be made anew."""
+
+    place: Path
+    overwrite: bool
+    record: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def at(cls, path: Path | str, source: str, *, overwrite: bool) -> ModelFolder:
+        """The folder, made if need be; `source` says of what picture its model is."""
+        place = Path(os.path.abspath(path))
+        if not place.parent.is_dir():
+            raise InputError(f"{str(path)!r}: there is no folder {str(place.parent)!r}; make it")
+        if place.is_symlink() or (place.exists() and not place.is_dir()):
+            raise InputError(f"{str(path)!r} is no folder; choose another one with -o")
+        record = _record(place)
+        if record is None and place.exists() and any(place.iterdir()):
+            raise InputError(
+                f"{str(path)!r} exists and is no model of BezSoma, so nothing in it is touched; "
+                "choose another folder with -o"
+            )
+        if record and record["source"] != source and not overwrite:
+            raise InputError(
+                f"{str(path)!r} holds the model of another picture; choose another folder with -o, "
+                "or replace it with --overwrite"
+            )
+        folder = cls(place, overwrite, record or {})
+        if not record or record["source"] != source:
+            known = {"stages": record["stages"]} if record else {"stages": {}}
+            folder.record = {"format": FORMAT, "source": source, **known}
+        folder._check_room()
+        with written(place):
+            place.mkdir(exist_ok=True)
+            folder._save()
+        return folder
+
+    def _check_room(self) -> None:
+        free = shutil.disk_usage(self.place.parent).free
+        if free < ROOM:
+            raise InputError(
+                f"a model needs about {ROOM / 1e6:.0f} MB, and the disk of {str(self.place)!r} has "
+                f"{free / 1e6:.0f} MB free; free some, or choose another folder with -o"
+            )
+
+    def done(self, stage: str, names: Iterable[str], key: str) -> bool:
+        """Whether the files of a stage stand there as it left them, made with this key."""
+        known = self.record["stages"].get(stage)
+        names = list(names)
+        if known is None:
+            return False
+        for name, sum_ in known["files"].items():
+            path = self.place / name
+            if path.exists() and hashed([path]) != sum_:
+                raise InputError(
+                    f"{str(path)!r} was changed since it was made; move it elsewhere, and a new "
+                    "one will be made"
+                )
+        whole = all((self.place / name).exists() for name in names)
+        if whole and known["key"] == key:
+            return True
+        if known["key"] != key and not self.overwrite:
+            raise InputError(
+                f"the stage {stage!r} in {str(self.place)!r} was made with other settings or "
+                "another version; make it and what follows anew with --overwrite, or choose "
+                "another folder with -o"
+            )
+        return False
+
+    def fill(self, stage: str, key: str, write: Callable[[Path], dict[str, Any]]) -> dict[str, Any]:
+        """Have a stage write its files into a folder; keep them, and what it says of itself."""
+        with written(self.place):
+            partial = Path(tempfile.mkdtemp(dir=self.place, prefix=f".{stage}."))
+            try:
+                said = write(partial)
+                files = sorted(partial.iterdir())
+                sums = {path.name: hashed([path]) for path in files}
+                for path in files:
+                    path.replace(self.place / path.name)
+            finally:
+                shutil.rmtree(partial, ignore_errors=True)
+            self.record["stages"][stage] = {"key": key, "files": sums, "said": said}
+            self._save()
+        return said
+
+    def said(self, stage: str) -> dict[str, Any]:
+        """What a finished stage said of itself."""
+        said: dict[str, Any] = self.record["stages"][stage]["said"]
+        return said
+
+    def _save(self) -> None:
+        text = json.dumps(self.record, indent=1) + "\n"
+        write_whole(self.place / RECORD, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def _record(place: Path) -> dict[str, Any] | None:
+    """What model.json says, if the folder has one that is ours."""
+    try:
+        record = json.loads((place / RECORD).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    ours = isinstance(record, dict) and record.get("format") == FORMAT
+    return record if ours and isinstance(record.get("stages"), dict) else None
+
+
+def hashed(paths: Iterable[Path], *words: str) -> str:
+    """SHA-256 of the contents of files in order, and of words."""
+    total = hashlib.sha256()
+    for path in paths:
+        with path.open("rb") as file:
+            total.update(hashlib.file_digest(file, "sha256").digest())
+    for word in words:
+        total.update(hashlib.sha256(word.encode()).digest())
+    return total.hexdigest()
+
+
+def source_of(path: Path) -> str:
+    """SHA-256 of a picture: of its file, or of all files of its folder by name.
+
+    A .mhd or .nhdr file is only a header; its values lie in files beside it, whatever their names,
+    so all that it names count.
+    """
+    if not path.exists():
+        raise InputError(f"no file or folder {str(path)!r}; give a CT: a file, or a DICOM folder")
+    if path.is_dir():
+        return hashed(sorted(p for p in path.rglob("*") if p.is_file()))
+    if path.suffix.lower() not in (".mhd", ".nhdr"):
+        return hashed([path])
+    text = path.read_text(encoding="latin-1")
+    words = [re.split("[=:]", line)[-1].strip() for line in text.splitlines()]
+    beside = (path.parent / word for word in words if word and len(word) < 256)
+    return hashed([path, *(file for file in beside if file.is_file())])
+
+
+def key_of(*parts: object) -> str:
+    """What a stage depends on, as one word: settings, what came before, the version."""
+    return hashed([], __version__, *(json.dumps(part, sort_keys=True) for part in parts))
