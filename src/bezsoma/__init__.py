@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from bezsoma.case import Case as Case
     from bezsoma.case import read_case as read_case
     from bezsoma.case import run_case as run_case
+    from bezsoma.case.showing import results_film as results_film
+    from bezsoma.case.showing import results_picture as results_picture
     from bezsoma.equations.locked import unlocked as unlocked
     from bezsoma.errors import BezSomaError as BezSomaError
     from bezsoma.errors import InputError as InputError
@@ -53,18 +55,43 @@ if TYPE_CHECKING:
     from bezsoma.mesh.field import Field as Field
     from bezsoma.mesh.files import read_mesh as read_mesh
     from bezsoma.mesh.files import write_mesh as write_mesh
+    from bezsoma.mesh.isolines import isolines as isolines
+    from bezsoma.mesh.levels import contour as contour
+    from bezsoma.mesh.levels import slice_of as slice_of
+    from bezsoma.mesh.lines import line_through as line_through
+    from bezsoma.mesh.planes import Plane as Plane
     from bezsoma.mesh.solids import ball as ball
     from bezsoma.mesh.solids import block as block
     from bezsoma.mesh.split import split as split
+    from bezsoma.mesh.subdivision import Subdivision as Subdivision
+    from bezsoma.mesh.subdivision import subdivision as subdivision
     from bezsoma.mesh.tets import TetMesh as TetMesh
+    from bezsoma.model import ModelSettings as ModelSettings
+    from bezsoma.model import run_model as run_model
+    from bezsoma.refinement.estimates import energy_estimate as energy_estimate
+    from bezsoma.refinement.estimates import goal_estimate as goal_estimate
+    from bezsoma.refinement.goals import InnerMean as InnerMean
+    from bezsoma.refinement.goals import PatchMean as PatchMean
+    from bezsoma.refinement.goals import SurfaceMean as SurfaceMean
+    from bezsoma.refinement.levels import Refined as Refined
+    from bezsoma.refinement.loop import refined as refined
     from bezsoma.results import Results as Results
     from bezsoma.results import read_results as read_results
     from bezsoma.solvers.solution import Solution as Solution
     from bezsoma.solvers.solve import solve as solve
+    from bezsoma.view.convergence import convergence_picture as convergence_picture
+    from bezsoma.view.film import film as film
     from bezsoma.view.history import history_picture as history_picture
+    from bezsoma.view.named import head_picture as head_picture
+    from bezsoma.view.named import mesh_picture as mesh_picture
     from bezsoma.view.picture import face_picture as face_picture
     from bezsoma.view.picture import picture as picture
+    from bezsoma.view.picture import side_by_side as side_by_side
+    from bezsoma.view.shot import Shot as Shot
+    from bezsoma.view.tessellation import tessellation as tessellation
     from bezsoma.view.vtk import write_vtu as write_vtu
+    from bezsoma.view.vtkhdf import write_vtkhdf as write_vtkhdf
+    from bezsoma.view.window import show as show
 
 HOMES = {
     "bezsoma.case": ["Case", "read_case", "run_case"],
@@ -93,13 +120,31 @@ HOMES = {
     "bezsoma.mesh.files": ["read_mesh", "write_mesh"],
     "bezsoma.mesh.solids": ["ball", "block"],
     "bezsoma.mesh.split": ["split"],
+    "bezsoma.mesh.subdivision": ["Subdivision", "subdivision"],
     "bezsoma.mesh.tets": ["TetMesh"],
+    "bezsoma.refinement.estimates": ["energy_estimate", "goal_estimate"],
+    "bezsoma.refinement.goals": ["InnerMean", "PatchMean", "SurfaceMean"],
+    "bezsoma.refinement.levels": ["Refined"],
+    "bezsoma.refinement.loop": ["refined"],
+    "bezsoma.model": ["ModelSettings", "run_model"],
     "bezsoma.results": ["Results", "read_results"],
     "bezsoma.solvers.solution": ["Solution"],
     "bezsoma.solvers.solve": ["solve"],
     "bezsoma.view.history": ["history_picture"],
-    "bezsoma.view.picture": ["face_picture", "picture"],
+    "bezsoma.view.tessellation": ["tessellation"],
+    "bezsoma.view.picture": ["face_picture", "picture", "side_by_side"],
+    "bezsoma.case.showing": ["results_film", "results_picture"],
+    "bezsoma.mesh.isolines": ["isolines"],
+    "bezsoma.mesh.levels": ["contour", "slice_of"],
+    "bezsoma.mesh.lines": ["line_through"],
+    "bezsoma.mesh.planes": ["Plane"],
+    "bezsoma.view.convergence": ["convergence_picture"],
+    "bezsoma.view.film": ["film"],
+    "bezsoma.view.shot": ["Shot"],
+    "bezsoma.view.window": ["show"],
+    "bezsoma.view.named": ["head_picture", "mesh_picture"],
     "bezsoma.view.vtk": ["write_vtu"],
+    "bezsoma.view.vtkhdf": ["write_vtkhdf"],
 }
 """Module -> the public names that live in it."""
 
