@@ -58,3 +58,19 @@ the mandible, whose cuts from the skull are a matter of a voxel or two."""
 SKIN_VOXELS = 0.3
 """Mean distance of the labelled skin from the true one, in voxels; a perfect rounding to voxels has
 0.2 to 0.25."""
+
+ANGLE = 8.0
+"""Degrees: what no dihedral angle of a mesh made from labels falls below."""
+
+SURFACE_VOXELS = 0.5
+"""Mean distance of a surface of the mesh from where the labels end, in voxels."""
+
+TISSUE_VOLUME = 0.02
+"""Volume of the mesh against that of the voxels: chords cut off corners, steps are smoothed."""
+
+SMOOTH_EFFECTIVITY = 0.05
+"""Estimated over true error of a smooth displacement, less one: two degrees more see all of it but
+what is left at degree 1 on few tets."""
+
+LOOSE_SOLVES = 0.05
+"""Errors from solves to 3 % of the residual: 1 % of the error and a part of what is not seen."""

@@ -15,7 +15,6 @@ import tolerances
 from bezsoma.case.build import made
 from bezsoma.case.quantities import Measured
 from bezsoma.case.sources import found
-from bezsoma.demo import demo_case
 from cases.written import BLOCK, case_file
 
 
@@ -278,8 +277,8 @@ def test_the_cases_on_offer_are_sound(root: Path) -> None:
     assert [bz.read_case(path).title for path in cases]
 
 
-def test_the_demo_is_a_case_like_any_other(tmp_path: Path) -> None:
-    case = demo_case("small")
+def test_the_head_by_formula_is_a_case_like_any_other(root: Path, tmp_path: Path) -> None:
+    case = bz.read_case(root / "cases" / "head_phantom.toml")
     assert case.file.degree == 3
     assert case.file.support[1].translation == (0, -6, 0)
     path = tmp_path / "again.toml"

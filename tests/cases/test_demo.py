@@ -1,48 +1,50 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The demo leaves what a newcomer needs, and its face follows the jaw."""
+"""The demo goes the whole way, from a CT to a face, and leaves what a newcomer needs."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
+pytest.importorskip("SimpleITK", reason="comes with the extra 'imaging'")
+
 import bezsoma as bz
-from bezsoma import cli
-from bezsoma.demo import LOOKED_AT, demo_case
-from bezsoma.imaging import landmarks
+from bezsoma import cli, demo
+from bezsoma.demo import HEAD, MODEL, OURS, PREDICTION, run_demo
+from bezsoma.errors import InputError
 
 
-def test_the_demo_leaves_what_a_newcomer_needs(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.fixture
+def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(demo.HEADS, "small", demo.Head(3.0, 4000, 6.0))
+
+
+@pytest.mark.slow
+def test_the_demo_goes_the_whole_way(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], coarse: None
 ) -> None:
     folder = tmp_path / "demo"
-    words = ["demo", "--size", "small", "--degree", "2", "-q", "-o", str(folder)]
+    words = ["demo", "--size", "small", "--degree", "1", "-q", "-o", str(folder)]
     assert cli.main(words) == 0
     out = capsys.readouterr().out
-    assert "not a medical device" in out
-    assert f"look at {folder / 'before-after-three-quarter.png'}" in out
-    assert all(name in out for name in ("chin", "fold", "lower_lip", "upper_lip"))
-    assert (folder / "before-after-front.png").read_bytes().startswith(b"\x89PNG")
-    assert "Do not base treatment on it" in (folder / "README.txt").read_text()
-    results = bz.read_results(folder)
-    assert results.displacement.degree == 2
-    moved = {name: -probe["displacement"][1] for name, probe in results.summary["probes"].items()}
-    assert 6 > moved["fold"] > moved["chin"] > 5
-    assert moved["chin"] > moved["lower_lip"] > moved["upper_lip"] > moved["nose_tip"] > -0.1
+    assert "not a medical device" in out and "chin" in out
+    assert f"before and after: {folder / HEAD}" in out
+    assert {path.name for path in folder.iterdir()} == OURS
+    assert (folder / HEAD).read_bytes().startswith(b"\x89PNG")
+    assert "LOOK at labels.png" in (folder / MODEL / "README.txt").read_text()
+    results = bz.read_results(folder / PREDICTION)
+    assert results.displacement.degree == 1
+    moved = results.summary["probes"]["chin"]["displacement"]
+    assert -6.5 < moved[1] < -4.5 and abs(moved[0]) < 0.5
+    assert cli.main(words) == 2
+    assert "holds a demo already" in capsys.readouterr().err
 
 
-def test_the_demo_looks_at_landmarks_of_its_head() -> None:
-    places = landmarks()
-    probes = demo_case("large").file.probe
-    assert [probe.name for probe in probes] == [name.replace(" ", "_") for name in LOOKED_AT]
-    for name, probe in zip(LOOKED_AT, probes, strict=True):
-        assert np.abs(np.array(probe.point) - places[name]).max() < 0.06
-
-
-def test_what_holds_the_demo_is_what_its_head_has() -> None:
-    """All that is bone or beside it is held or moved; skin, mucosa and cut are free."""
-    mesh = bz.head_phantom("small")
-    named = {place for support in demo_case("small").file.support for place in support.on}
-    assert named == set(mesh.surfaces) - {"skin", "mucosa", "cut"}
+def test_a_demo_touches_nothing_of_others(tmp_path: Path) -> None:
+    (tmp_path / "note.txt").write_text("keep me")
+    with pytest.raises(InputError, match="did not write"):
+        run_demo("small", tmp_path, overwrite=True)
+    with pytest.raises(InputError, match="no folder"):
+        run_demo("small", tmp_path / "a" / "b")
+    assert [path.name for path in tmp_path.iterdir()] == ["note.txt"]

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from bezsoma import NotConverged, block, cli, write_mesh
-from bezsoma.case import running
+from bezsoma.case import refining, running
 from cases.written import case_file
 
 Printed = pytest.CaptureFixture[str]
@@ -101,7 +101,7 @@ def test_a_degree_that_is_not_built_is_refused(
         (["run", "a.toml", "--dgree", "2"], ["--dgree", "--degree"]),
         (["run", "a.toml", "--degree", "two"], ["two", "int"]),
         (["run", "nowhere.toml"], ["no case 'nowhere.toml'"]),
-        (["demo", "--size", "huge"], ["huge", "small", "medium", "large"]),
+        (["demo", "--size", "huge"], ["huge", "small", "large"]),
         (["mesh", "info", "nowhere.npz"], ["nowhere.npz"]),
         (["mesh", "info", "a.npz", "--surfaces", "skin"], ["'skin' is no name with a tag"]),
         (["mesh", "info", "a.npz", "--surfaces", "a=1,a=2"], ["'a' is named twice"]),
@@ -137,7 +137,7 @@ def stopped_by(error: BaseException) -> Any:
     ("error", "status", "said"),
     [
         (NotConverged("stopped after 9 steps", [1.0]), 1, "stopped after 9 steps"),
-        (KeyboardInterrupt(), 130, "stopped; nothing was left behind"),
+        (KeyboardInterrupt(), 130, "stopped; nothing half-done was left behind"),
     ],
 )
 def test_a_run_that_does_not_end_well_leaves_nothing(
@@ -149,7 +149,7 @@ def test_a_run_that_does_not_end_well_leaves_nothing(
     capsys: Printed,
 ) -> None:
     path = case_file(tmp_path)
-    monkeypatch.setattr(running, "solve", stopped_by(error))
+    monkeypatch.setattr(refining, "solve", stopped_by(error))
     assert ran("run", path, "-q", "-o", tmp_path / "out") == status
     assert capsys.readouterr().err == f"bezsoma: {said}\n"
     assert [path.name for path in tmp_path.iterdir()] == ["case.toml"]
@@ -223,7 +223,10 @@ def test_help_is_enough_to_start_from(capsys: Printed) -> None:
     assert ran("--help") == 0
     out = capsys.readouterr().out
     assert "Start with: bezsoma demo" in out
-    assert all(word in out for word in ("run", "demo", "mesh", "--version", "not a medical device"))
+    assert all(
+        word in out
+        for word in ("run", "model", "demo", "mesh", "--version", "not a medical device")
+    )
     assert ran("run", "--help") == 0
     out = " ".join(capsys.readouterr().out.replace("│", " ").split())
     assert "--overwrite" in out
@@ -232,7 +235,7 @@ def test_help_is_enough_to_start_from(capsys: Printed) -> None:
     assert ran("demo", "--help") == 0
     out = " ".join(capsys.readouterr().out.replace("│", " ").split())
     assert "bezsoma-demo-SIZE" in out
-    assert "The case.toml among the results is an example" in out
+    assert "The case.toml in its folder `model` is an example" in out
     assert ran() == 0
     assert "Start with" in capsys.readouterr().out
 

@@ -21,7 +21,7 @@ from bezsoma.equations.element import lame_constants
 from bezsoma.equations.matrix_free import MatrixFree, walk
 from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.mesh import ControlNet, block
-from bezsoma.solvers.multigrid import multigrid
+from bezsoma.solvers.multigrid import degree_one, multigrid
 from bezsoma.solvers.saddle import saddle
 from processes import prelude
 
@@ -226,3 +226,36 @@ def test_controls_that_no_walk_numbered_so_are_refused(change: Callable[[Int32s]
     numbers = np.ascontiguousarray(change(net.walked()))
     with pytest.raises(ValueError, match="as the walk over the tets first touches them"):
         _core.MatrixFree(walk(net, np.array([[0.6, 0.4]]), numbers))
+
+
+@pytest.mark.parametrize("kind", ["below", "beyond", "none", "too few"])
+def test_vertices_that_are_none_are_refused(kind: str) -> None:
+    """The multigrid's rows are written where the corners of tets say."""
+    net = ControlNet(block(cells=2), 2)
+    operator = MatrixFree(net, np.array([[0.6, 0.4]]))
+    held = np.zeros((net.count, 3), dtype=bool)
+    corners, places, vertices = degree_one(net, held)
+    assert corners is not None
+    wrong = {
+        "below": corners - 1,
+        "beyond": corners + 1,
+        "none": None,
+        "too few": np.ascontiguousarray(corners[1:]),
+    }
+    with pytest.raises(ValueError, match="corners must number the vertices of the walk's tets"):
+        _core.Multigrid(operator.kernel, operator.walk(), wrong[kind], places, held, vertices)
+    with pytest.raises(ValueError, match="must fit the walk's controls and vertices"):
+        _core.Multigrid(operator.kernel, operator.walk(), corners, places, held[1:], vertices)
+    _core.Multigrid(operator.kernel, operator.walk(), corners, places, held, vertices)
+
+
+def test_a_walk_is_used_up_by_the_preconditioner_it_makes() -> None:
+    """Its numbering is let go, which is much of the memory; a second use says so."""
+    net = ControlNet(block(cells=2), 1)
+    operator = MatrixFree(net, np.array([[0.6, 0.4]]))
+    held = np.zeros((net.count, 3), dtype=bool)
+    corners, places, vertices = degree_one(net, held)
+    used = operator.walk()
+    _core.Multigrid(operator.kernel, used, corners, places, held, vertices)
+    with pytest.raises(ValueError, match="this walk is used up"):
+        _core.Multigrid(operator.kernel, used, corners, places, held, vertices)

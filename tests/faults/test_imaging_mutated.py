@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,8 @@ from bezsoma.errors import InputError
 from bezsoma.imaging import Frame, Volume, read_landmarks, read_volume, write_landmarks
 from bezsoma.imaging.child import Child
 
-NUMBER = 1000
+NUMBER = int(os.environ.get("BEZSOMA_MUTATED", "1000"))
+"""Damaged files of each format; `./dev fuzz` takes 10,000."""
 MEMORY = 1 << 30
 
 

@@ -40,6 +40,13 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: bz.FunctionLaw(lambda H: H[..., 0]), "one 3 x 3 stress for each H"),
     (lambda: bz.FunctionLaw(lambda H: H, derivative="exact"), "is not known"),
     (lambda: bz.FunctionLaw(lambda H: 0 * H), "zero or not finite"),
+    (lambda: bz.FunctionLaw(lambda H: H, derivative=lambda H, dH: dH[0]), "change of stress"),
+    (lambda: bz.FunctionLaw(lambda H: H, energy=lambda H: np.zeros(())), "one number for each H"),
+    (lambda: bz.FunctionLaw(lambda H: H, kappa=-1.0), "kappa of FunctionLaw"),
+    (lambda: bz.VerondaWestmann(-1, 1, 5), "c1 of VerondaWestmann"),
+    (lambda: bz.Guccione(0, 8, 2, 4, 5, (1, 0, 0)), "C of Guccione"),
+    (lambda: bz.Guccione(1, 8, 2, 4, 5, (np.nan, 0, 0)), "fibre of Guccione"),
+    (lambda: bz.Ogden(np.array(1.0), [0.0], 5), "mu * alpha must be positive"),  # type: ignore[arg-type]
     (lambda: bz.Pressure("top", value=1.0, following="yes"), "must be True or False"),  # type: ignore[arg-type]
 ]
 
@@ -65,6 +72,8 @@ def body(law: Any = None, shift: Any = (0, 0, 0.1), **more: Any) -> bz.Body:
         ({"steps": -3}, "in one step or more"),
         ({"steps": [0.5, 0.9]}, "ending with 1"),
         ({"steps": [0.5, 0.2, 1]}, "ascending"),
+        ({"steps": [float("nan"), 1]}, "ascending"),
+        ({"steps": []}, "ascending"),
         ({"steps": "many"}, "give how many"),
         ({"steps": True}, "give how many"),
         ({"method": "picard"}, "no method 'picard'"),
@@ -119,6 +128,33 @@ def test_exponent_that_overflows() -> None:
         bz.solve(body(bz.Stiffening(1.0, 0.3, 50.0), (0, 0, 5.0)))
     assert failure.value.fraction < 1
     assert "exponent = " in str(failure.value) and "region 'tissue'" in str(failure.value)
+
+
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+@pytest.mark.parametrize(
+    "law",
+    [bz.Guccione(1.0, 50.0, 20.0, 30.0, 5.0, (1, 0, 0)), bz.Stiffening(1.0, 0.3, 50.0)],
+)
+def test_tangent_that_overflows(law: Any, solver: str) -> None:
+    """Forces still have numbers there; the tangent, or squares of it, have none."""
+    with pytest.raises(bz.NotConverged) as failure:
+        bz.solve(body(law, (0, 0, 5.0)), solver=solver)
+    assert 0 < failure.value.fraction < 1 and failure.value.last.residual <= 1e-10
+    assert "exponent = " in str(failure.value) and "region 'tissue'" in str(failure.value)
+
+
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+def test_given_step_that_fails_says_what_was_refused_and_where(solver: str) -> None:
+    """Whatever ends it, a residual that does not fall or a linear solve."""
+    with pytest.raises(bz.NotConverged) as failure:
+        bz.solve(body(bz.Stiffening(1.0, 0.3, 50.0), (0, 0, 5.0)), solver=solver, steps=1)
+    assert "does not fall along the correction; refused was exponent = " in str(failure.value)
+    assert "region 'tissue', tet" in str(failure.value)
+
+
+def test_more_exact_than_rounding() -> None:
+    with pytest.raises(bz.NotConverged, match="only rounding is left of the residual"):
+        bz.solve(body(), rtol=1e-30)
 
 
 def test_overflow_on_the_first_try_is_met_by_a_smaller_step() -> None:

@@ -132,7 +132,9 @@ def test_too_little_room_is_found_before_solving(
 ) -> None:
     usage = shutil.disk_usage(tmp_path)._replace(free=1000)
     monkeypatch.setattr("bezsoma.results.folder.shutil.disk_usage", lambda path: usage)
-    monkeypatch.setattr(running, "solve", lambda *a, **k: pytest.fail("solving was begun"))
+    monkeypatch.setattr(
+        "bezsoma.case.refining.solve", lambda *a, **k: pytest.fail("solving was begun")
+    )
     with pytest.raises(InputError, match="MB free; no space is left"):
         run_case(read_case(case_file(tmp_path)), tmp_path / "out")
 

@@ -11,7 +11,17 @@ import pytest
 from house import floors
 from house.apart import python_on
 
-SPECIAL = ["meshio", "embreex", "matplotlib", "cyclopts", "rich", "SimpleITK"]
+SPECIAL = [
+    "meshio",
+    "embreex",
+    "matplotlib",
+    "PIL",
+    "pyvista",
+    "cyclopts",
+    "rich",
+    "SimpleITK",
+    "h5py",
+]
 
 
 def test_no_floor_imports_from_above(root: Path) -> None:

@@ -136,7 +136,7 @@ ENERGIES = {
     "mooney_rivlin": Plain([KAPPA, 0.3, 0.2], mooney_rivlin),
     "ogden": Plain([KAPPA, 0.5, 2.0, -0.3, -3.0, 0.02, 9.0], ogden),
     "veronda_westmann": Plain([KAPPA, 0.3, 1.2], veronda_westmann),
-    "guccione": Plain([KAPPA, 0.5, 3.0, 2.0, 1.5, *FRAME.ravel()], guccione),
+    "guccione": Plain([KAPPA, 0.5, 3.0, 2.0, 1.5, *FRAME[0]], guccione),
 }
 
 SHEARS = {"": 1.0, "_engineering": 2.0}

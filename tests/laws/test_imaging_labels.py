@@ -93,6 +93,18 @@ def found(coarse: HeadCt) -> Labels:
     return labels(coarse.volume, LabelSettings(tissues=True))
 
 
+def test_jaw_and_skull_of_the_truth_meet_only_where_they_are_told_to() -> None:
+    """With gaps over condyles and between teeth they are apart by more than a voxel everywhere."""
+
+    def meeting(head: HeadCt) -> Any:
+        beside = ndimage.binary_dilation(head.truth == MANDIBLE, np.ones((3, 3, 3)))
+        return head.volume.frame.points(np.argwhere(beside & (head.truth == BONE))[:, ::-1])
+
+    assert not len(meeting(head_ct((2, 2, 2), joint=3, bite=3)))
+    heights = meeting(head_ct((2, 2, 2), joint=0, bite=0))[:, 2]
+    assert len(heights) and (np.minimum(abs(heights), abs(heights - 36)) < 4).all()
+
+
 def test_rest_table_and_wires_are_gone(coarse: HeadCt, found: Labels) -> None:
     whole = found.whole(coarse.volume)
     rest = (coarse.volume.values > -300) & (coarse.skin > 3)

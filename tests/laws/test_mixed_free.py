@@ -294,6 +294,22 @@ def test_leaps_of_the_residual_are_not_followed_for_ever(instructions: str) -> N
     assert apart(p, direct_saddle(equations, matrix)[1]) < 1e-4
 
 
+def test_soft_and_stiff_tets_thrown_together_are_weighed_where_they_are() -> None:
+    """Contrast 1000, tet by tet: some 550 steps; 1073 with one weight for all."""
+    cube = block(cells=3)
+    stiff = np.random.default_rng(0).integers(0, 2, len(cube.tets))
+    mesh = TetMesh(cube.points, cube.tets, stiff, ("soft", "stiff"), surfaces=cube.surfaces)
+    pull = [Traction("top", value=(1.0, 0, -1.0))]
+    body = Body(mesh, 3, LinearElastic(1.0, 0.3), [Fixed("bottom")], pull)
+    net, pressures = ControlNet(mesh, 3), ControlNet(mesh, 2)
+    held = prescribed(body, net).mask
+    f = np.where(held, 0.0, forces(body, net))
+    operator = MixedFree(net, pressures, np.array([[1.0, 0], [1e3, 0]]))
+    none = np.zeros((0, pressures.count))
+    *_, history = saddle(operator, held, f, np.zeros(len(none.T)), none, 1e-8, lambda *_: None)
+    assert len(history) < 800
+
+
 def test_what_does_not_converge_says_so() -> None:
     problem = Problem(2, 4)
     zero = np.zeros(problem.pressures.count)

@@ -368,6 +368,13 @@ def test_wrong_arguments_are_refused() -> None:
             solve(pulled(1), rtol=rtol)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="it solves a Body"):
         solve(block())  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="progress = 3 cannot be called: give a function"):
+        solve(pulled(1), progress=3)  # type: ignore[arg-type]
+
+
+def test_rtol_may_be_a_number_of_numpy() -> None:
+    found = solve(pulled(2), solver="multigrid", rtol=np.float32(1e-5))  # type: ignore[arg-type]
+    assert found.residual <= 1.01e-5
 
 
 @pytest.mark.parametrize("solver", ["direct", "cg", "multigrid"])

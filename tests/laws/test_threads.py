@@ -257,7 +257,7 @@ def test_an_error_in_the_progress_comes_through() -> None:
 # ------------------------------------------------------------------ how many
 
 
-@pytest.mark.parametrize("given", ["two", "", "1.5", "-1", "99999", "nan", "0x4"])
+@pytest.mark.parametrize("given", ["two", " ", "1.5", "-1", "99999", "nan", "0x4"])
 def test_a_wrong_number_in_the_environment(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("BEZSOMA_THREADS", given)
     with pytest.raises(
@@ -282,6 +282,8 @@ def test_the_environment_is_heard_and_the_argument_before_it(
     assert "2 threads" in solve(body, solver="multigrid", threads=np.int64(2)).method
     cores = os.cpu_count()
     assert f"{cores} thread" in solve(body, solver="multigrid", threads=0).method
+    monkeypatch.setenv("BEZSOMA_THREADS", "")  # as a shell leaves what it empties
+    assert f"{cores} thread" in solve(body, solver="multigrid").method
 
 
 def test_the_case_file_says_how_many(tmp_path: Path) -> None:

@@ -24,11 +24,32 @@ MESHES = (
 
 CPP = (
     Mutant(
+        "changes of volume all weighed alike in the mixed solver",
+        f"{CORE}/saddle.cpp",
+        "return term(forces_ + i) * volumes[i];",
+        "return term(forces_ + i) * volumes[0];",
+        MIXED_FREE,
+    ),
+    Mutant(
+        "corners of tets believed without a look",
+        f"{CORE}/bindings.cpp",
+        "bezsoma::within(*corners, points.shape(0))",
+        "true",
+        TEAM,
+    ),
+    Mutant(
         "residuals that leap away followed for ever",
         f"{CORE}/saddle.cpp",
         "norm > leap * least",
         "norm > 1e300 * least",
         MIXED_FREE,
+    ),
+    Mutant(
+        "a slab of A P that forgets the slabs before it",
+        f"{CORE}/galerkin.cpp",
+        "*to++ += column[k];",
+        "*to++ = column[k];",
+        MULTIGRID,
     ),
     Mutant(
         "the mean strain taken out of the deviator twice as often as it should",
@@ -292,8 +313,8 @@ CPP = (
     Mutant(
         "an isochoric energy with a quarter of I1 F^-T where a third belongs",
         f"{CORE}/laws/finite_strain.hpp",
-        "const S b = x.trace * T(2.0 / 3);",
-        "const S b = x.trace * T(2.0 / 4);",
+        "return {a, a * x.trace * T(-2.0 / 3), S{}};",
+        "return {a, a * x.trace * T(-2.0 / 4), S{}};",
         LAWS,
     ),
     Mutant(
@@ -318,10 +339,31 @@ CPP = (
         LAWS,
     ),
     Mutant(
-        "the shear of fibre and sheet with the stiffness across",
+        "the shear of fibre and sheet counted once along the fibres",
         f"{CORE}/laws/finite_strain.hpp",
-        "{par[2], par[3], par[3], par[4], par[3], par[4]}",
-        "{par[2], par[3], par[3], par[3], par[3], par[4]}",
+        "along = par[2] + par[3] - 2 * par[4];",
+        "along = par[2] + par[3] - par[4];",
+        LAWS,
+    ),
+    Mutant(
+        "a tangent whose cofactor stays as it is",
+        f"{CORE}/laws/motion.hpp",
+        "volume.d * cof[k][l] + volume.v * dcof[k][l]",
+        "volume.d * cof[k][l]",
+        LAWS,
+    ),
+    Mutant(
+        "a tangent without the change of I2",
+        f"{CORE}/laws/motion.hpp",
+        "(quarter + quarter) * dcof[k / 3][k % 3]",
+        "quarter * dcof[k / 3][k % 3]",
+        LAWS,
+    ),
+    Mutant(
+        "a reciprocal root with one of Newton's steps too few",
+        f"{CORE}/laws/lane_functions.hpp",
+        "log_terms = 10, root_steps = 4;",
+        "log_terms = 10, root_steps = 2;",
         LAWS,
     ),
     Mutant(
