@@ -120,7 +120,6 @@ def report(found: Run) -> str:
             *(f"{row['stages'][key]:.2g}" if key in row["stages"] else "-" for key in STAGES),
         ]
         for row in rows
-        if row["unknowns"] > 20_000
     ]
     failed = "".join(f"\n\n{_line(row)}" for row in found["failed"])
     return (

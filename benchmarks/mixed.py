@@ -22,7 +22,7 @@ import record
 Run = dict[str, Any]
 CONFIGURATIONS = (
     ("bezsoma", "saddle", "bezsoma"),
-    ("ngsolve", "bddc deviatoric", "ngsolve"),
+    ("ngsolve", "bddc vertices", "ngsolve"),
     ("ngsolve", "bddc", "ngsolve"),
     ("ngsolve", "direct", "ngsolve"),
     ("pardiso", "LDL^T", "pypardiso"),

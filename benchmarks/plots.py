@@ -92,6 +92,7 @@ def stages(rows: list[Run], names: dict[str, str], path: str) -> None:
     largest = {}
     for row in sorted(rows, key=lambda r: r["unknowns"]):
         largest[row["degree"]] = row
+    largest = dict(sorted(largest.items()))
     labels = [f"n = {n}, {row['unknowns'] / 1e6:.2g} M" for n, row in largest.items()]
     begin = np.zeros(len(largest))
     colours = plt.get_cmap("tab10").colors
