@@ -45,15 +45,16 @@ def egg(points: Floats) -> Floats:
     return np.asarray(np.linalg.norm(points / [1, 0.8, 1.2], axis=1) - 6)
 
 
-def cut_egg() -> Stuffed:
-    """An egg with half axes 6, 4.8, 7.2, of which a plane through its middle leaves a half."""
+def cut_egg(beyond: float = 0.0) -> Stuffed:
+    """An egg with half axes 6, 4.8, 7.2, its middle so far beyond the plane that cuts it."""
     shape = (12, 24, 24)
     centres = np.moveaxis(np.indices(shape), 0, -1) * 0.8 + [0.4, -9.2, -9.2]
     sizes = 0.8 + 0.08 * np.linalg.norm(centres - [0, 0, 7], axis=-1)
     vertices, tets = lattice(Octree.of(sizes, 0.8, 2))
     on_side = np.zeros(vertices.shape, np.bool_)
     on_side[:, 0] = vertices[:, 0] == 0
-    return stuffed(vertices * 0.4 + [0, -9.6, -9.6], tets, on_side, egg)
+    points = vertices * 0.4 + [0, -9.6, -9.6]
+    return stuffed(points, tets, on_side, lambda x: egg(x - [beyond, 0, 0]))
 
 
 def test_half_an_egg_has_half_its_volume_and_a_flat_side() -> None:
@@ -68,6 +69,16 @@ def test_half_an_egg_has_half_its_volume_and_a_flat_side() -> None:
     curved = np.unique(facets[~flat])
     assert np.abs(egg(mesh.points[curved])).max() < 0.01
     assert body.on_surface[curved].all()
+
+
+@pytest.mark.parametrize("beyond", [-4.0, 4.0])
+def test_what_lies_on_the_cut_stays_on_it_where_the_surface_meets_it_at_a_slant(
+    beyond: float,
+) -> None:
+    body = cut_egg(beyond)
+    cut = body.on_side[:, 0]
+    assert cut.sum() > 20 and (body.points[cut, 0] == 0).all()
+    assert (body.points[~cut, 0] > 0).all()
 
 
 def test_vertices_move_to_better_angles_and_stay_where_they_belong() -> None:
