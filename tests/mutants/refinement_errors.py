@@ -30,7 +30,7 @@ REFINING = (
         f"{REFINEMENT}/raised.py",
         "np.where(self.held, 0.0, load), TIGHT)",
         "np.where(self.held, 0.0, load), LOOSE)",
-        ("tests/laws/test_estimates.py::test_the_goal_of_the_load_is_the_energy",),
+        ("tests/laws/test_products.py",),
     ),
     Mutant(
         "prescribed functions that are not taken anew in the higher degree",
@@ -44,7 +44,7 @@ REFINING = (
         f"{REFINEMENT}/products.py",
         "T += (lam * trace - p)",
         "T += (lam * trace + p)",
-        ("tests/laws/test_estimates.py::test_other_forms_beside_a_richer_answer",),
+        ("tests/laws/test_products.py",),
     ),
     Mutant(
         "a patch that reaches over to what it does not touch",
