@@ -33,7 +33,7 @@ PLAIN: dict[str, Any] = {
 @pytest.fixture(autouse=True)
 def _never_hang() -> Iterator[None]:
     """A reader that loops at the end of a damaged file fails instead of stopping the suite."""
-    signal.alarm(20)
+    signal.alarm(200)
     yield
     signal.alarm(0)
 
