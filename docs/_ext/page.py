@@ -34,7 +34,7 @@ from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 FENCE = re.compile(r"^```(\w+)(?: (\S.*?))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-COPIED = ("src/bezsoma", "tests", "pyproject.toml")
+COPIED = ("src", "tests", "pyproject.toml")
 DEV = """#!/bin/sh
 shift
 PYTHONPATH=tests exec {python} -m house.apart "$PWD/src" -q -p no:cacheprovider "$@"
@@ -81,7 +81,6 @@ def copy_project() -> None:
     """A copy of the project to change, with the core as it is built, and a `dev` that tests it."""
     for name in COPIED:
         place, bare = ROOT / name, shutil.ignore_patterns("__pycache__")
-        Path(name).parent.mkdir(exist_ok=True)
         _ = shutil.copytree(place, name, ignore=bare) if place.is_dir() else shutil.copy(place, name)
     for core in built_core():
         shutil.copy(core, "src/bezsoma")
