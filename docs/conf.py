@@ -20,6 +20,8 @@ extensions = [
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
     "sphinx.ext.viewcode",
+    "equations",
+    "executed",
     "mathml",
     "plain",
     "reference",

@@ -2,7 +2,8 @@
 """Pages that are run when the documentation is built; one that fails, fails the build.
 
 What a block printed is shown below it, and the pictures of a page are those that its run left: a page
-`tutorials/first_face.md` shows `generated/first_face/head.png`.
+`tutorials/first_face.md` shows `generated/first_face/head.png`. A page runs when it is read, which
+is whenever it has changed; `./dev docs -E` runs all of them anew.
 """
 
 from __future__ import annotations
@@ -12,16 +13,20 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from page import FENCE, ROOT
+from page import FENCE
 from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
 from sphinx.errors import ExtensionError
 
 EXECUTED = ("tutorials/*.md", "adding/*.md", "coming_from.md")
 """The pages that are run, from top to bottom."""
 RUNNER = Path(__file__).with_name("page.py")
+AT_ONCE = 2
+KEPT = "executed"
+"""The folder beside the built pages in which runs leave what they said and made."""
 
 
 def executed(docs: Path) -> list[Path]:
@@ -32,7 +37,8 @@ def executed(docs: Path) -> list[Path]:
 def run_page(page: Path, kept: Path) -> str:
     """Run a page; what went wrong, or nothing."""
     command = [sys.executable, str(RUNNER), str(page), str(kept)]
-    return subprocess.run(command, capture_output=True, text=True, check=False).stderr
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    return ran.stderr if ran.returncode else ""
 
 
 def pictures(page: Path) -> list[str]:
@@ -41,21 +47,33 @@ def pictures(page: Path) -> list[str]:
     return re.findall(rf"\]\(generated/{page.stem}/([^)]+)\)", text)
 
 
-def show(app: Sphinx, name: str, source: list[str]) -> None:
-    """Run a page that is about to be read, and put in what it printed."""
-    page = Path(app.srcdir) / f"{name}.md"
-    if page not in executed(Path(app.srcdir)):
-        return
-    with tempfile.TemporaryDirectory() as scratch:
-        kept = Path(scratch) / "kept"
-        if wrong := run_page(page, kept):
-            raise ExtensionError(f"a page does not run\n{wrong}")
-        said = iter(json.loads((kept / "said.json").read_text(encoding="utf-8")))
+def run_all(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
+    """Run the pages that are about to be read, two at a time."""
+    docs = Path(app.srcdir)
+    pages = [page for page in executed(docs) if str(page.relative_to(docs))[:-3] in names]
+    places = [kept(app, page) for page in pages]
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        wrong = [each for each in pool.map(run_page, pages, places) if each]
+    if wrong:
+        raise ExtensionError("\n".join(["pages do not run", *wrong]))
+    for page, place in zip(pages, places, strict=True):
         for file in pictures(page):
-            place = page.parent / "generated" / page.stem / file
-            place.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(kept / "files" / file, place)
-    source[0] = FENCE.sub(lambda block: dressed(block, next(said)), source[0])
+            shown = page.parent / "generated" / page.stem / file
+            shown.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(place / "files" / file, shown)
+
+
+def kept(app: Sphinx, page: Path) -> Path:
+    """Where the run of a page leaves what it said and made."""
+    return Path(app.doctreedir).parent / KEPT / page.stem
+
+
+def show(app: Sphinx, name: str, source: list[str]) -> None:
+    """Put in what the blocks of a page printed."""
+    page = Path(app.srcdir) / f"{name}.md"
+    if page in executed(Path(app.srcdir)):
+        said = iter(json.loads((kept(app, page) / "said.json").read_text(encoding="utf-8")))
+        source[0] = FENCE.sub(lambda block: dressed(block, next(said)), source[0])
 
 
 def dressed(block: re.Match[str], said: str) -> str:
@@ -64,10 +82,13 @@ def dressed(block: re.Match[str], said: str) -> str:
     named = words and words != "refused"
     caption = f":caption: {words.removeprefix('+ ')}\n\n" if named else ""
     code = f"```{{code-block}} {language}\n{caption}{text}```"
-    return code + (f"\n\n```{{code-block}} text\n:class: said\n\n{said.rstrip()}\n```" if said else "")
+    if not said:
+        return code
+    return f"{code}\n\n```{{code-block}} text\n:class: said\n\n{said.rstrip()}\n```"
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Listen to what is read."""
+    app.connect("env-before-read-docs", run_all)
     app.connect("source-read", show)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

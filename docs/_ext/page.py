@@ -100,7 +100,7 @@ def done(block: Block, page: Path, scope: dict[str, Any]) -> str:
     try:
         return way(block)(block, page, scope)
     except Failed as error:
-        raise Failed(f"{page.relative_to(ROOT)}, line {block.line}: {error}") from None
+        raise Failed(f"{page.name}, line {block.line}: {error}") from None
 
 
 def way(block: Block) -> Callable[[Block, Path, dict[str, Any]], str]:

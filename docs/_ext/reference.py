@@ -1,16 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The lists of the reference, read from the package so that none can be forgotten."""
+"""The pages of the reference that are read from the package, so that nothing can be forgotten."""
 
 from __future__ import annotations
 
 import inspect
 import pkgutil
+import sys
 from pathlib import Path
 
 from sphinx.application import Sphinx
 from sphinx.config import Config
 
 import bezsoma
+import keys
+from page import ROOT
+from bezsoma.cli import app as commands
+
+sys.path.insert(0, str(ROOT / "tests"))
+
+from house import installed  # noqa: E402
 
 ORDER = (
     "results",
@@ -50,11 +58,24 @@ def modules() -> str:
     return "\n".join([*title, *lines, *(f"   bezsoma.{name}" for name in high_to_low), ""])
 
 
+def command_line() -> str:
+    """A page with all commands and their options, as the command line itself has them."""
+    page: str = commands.generate_docs(output_format="markdown")
+    return page.replace("# bezsoma\n", "# The command line\n", 1)
+
+
 def write(app: Sphinx, config: Config) -> None:
-    """Write both lists where reference/index.md finds them."""
+    """Write them where reference/index.md finds them."""
     folder = Path(app.srcdir) / "reference" / "generated"
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in {"names.inc": names(), "modules.rst": modules()}.items():
+    pages = {
+        "names.inc": names(),
+        "modules.rst": modules(),
+        "case_keys.md": keys.page(),
+        "commands.md": command_line(),
+        "licences.md": installed.page(),
+    }
+    for name, text in pages.items():
         if not (folder / name).exists() or (folder / name).read_text() != text:
             (folder / name).write_text(text)
 

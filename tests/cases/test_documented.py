@@ -65,17 +65,3 @@ def test_the_case_on_the_page_runs_and_gives_what_it_expects(root: Path, tmp_pat
     results = bz.run_case(case, tmp_path / "out")
     assert [check for check in results.summary["expectations"] if not check["met"]] == []
     assert len(results.summary["expectations"]) == 2
-
-
-def test_the_case_of_the_tutorial_runs(root: Path, tmp_path: Path) -> None:
-    text = toml(root, "tutorials/first_case.md").replace('["front", "right"]', "[]")
-    case = case_from(tmp_path / "mine.toml", text)
-    results = bz.run_case(case, tmp_path / "out")
-    assert [check for check in results.summary["expectations"] if not check["met"]] == []
-
-
-def test_the_mistake_of_the_tutorial_is_reported_as_it_says(root: Path) -> None:
-    text = toml(root, "tutorials/first_case.md").replace("translation", "translatoin")
-    with pytest.raises(bz.InputError) as caught:
-        case_from(Path("mine.toml"), text)
-    assert f"bezsoma: {caught.value}" in page(root, "tutorials/first_case.md")
