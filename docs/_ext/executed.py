@@ -65,7 +65,7 @@ def run_all(app: Sphinx, env: BuildEnvironment, names: list[str]) -> None:
 
 def kept(app: Sphinx, page: Path) -> Path:
     """Where the run of a page leaves what it said and made."""
-    return Path(app.doctreedir).parent / KEPT / page.stem
+    return Path(app.outdir).parent / KEPT / page.stem
 
 
 def show(app: Sphinx, name: str, source: list[str]) -> None:
