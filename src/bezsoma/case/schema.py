@@ -140,7 +140,9 @@ class Mesh(Table):
     folder: Name | None = None
     """Where data lies when it is not beside the case, relative to the case."""
     phantom: Literal["small", "medium", "large"] | None = None
+    """The built-in head, of one of three sizes."""
     solid: Name | None = None
+    """A simple solid by its name in `bezsoma.mesh.solids`."""
     parameters: dict[str, Any] = {}
     """What the solid's function is called with."""
     surfaces: dict[Name, int] | None = None
@@ -173,22 +175,37 @@ class Material(Table):
 
     law: Literal[*LAW_NAMES] = "linear"  # type: ignore[valid-type]
     E: Finite | None = None
+    """Young's modulus, MPa."""
     nu: Finite | None = None
+    """Poisson's ratio; 0.5 is incompressible."""
     G: Finite | None = None
+    """The shear modulus, MPa; with `kappa` in place of `E` and `nu`."""
     kappa: Annotated[float, Field(allow_inf_nan=True)] | None = None
-    """MPa; inf is incompressible."""
+    """The bulk modulus, MPa; inf is incompressible."""
     A: Finite | None = None
+    """How fast a stiffening law stiffens."""
     measure: str | None = None
+    """The size of a strain, of a stiffening law."""
     shears: str | None = None
+    """Of the same: "tensor", or "engineering" as printed in the paper."""
     c1: Finite | None = None
+    """MPa; of Mooney-Rivlin and Veronda-Westmann."""
     c2: Finite | None = None
+    """MPa, or without unit; of the same."""
     mu: Annotated[tuple[Finite, ...], BeforeValidator(_tuple)] | None = None
+    """MPa, one for each term of Ogden's law."""
     alpha: Annotated[tuple[Finite, ...], BeforeValidator(_tuple)] | None = None
+    """The powers of these terms."""
     C: Finite | None = None
+    """MPa; of Guccione's law."""
     bf: Finite | None = None
+    """Of the same, along the fibres."""
     bt: Finite | None = None
+    """Across them."""
     bfs: Finite | None = None
+    """In shear along them."""
     fibre: Point | None = None
+    """The direction of the fibres."""
 
     @model_validator(mode="after")
     def _made(self) -> Material:
@@ -303,7 +320,9 @@ class Solver(Table):
     """How to solve."""
 
     method: Literal["auto", "direct", "multigrid", "cg", "saddle"] = "auto"
+    """As `solver` of `bezsoma.solve`."""
     rtol: Annotated[float, Field(gt=0, lt=1)] | None = None
+    """What the residual has to come down to, relative to that at zero."""
     steps: Steps = "auto"
     """Of the load, where the body is not linear: how many, their fractions, or "auto"."""
     iteration: Literal["newton", "modified", "secant"] = "newton"
@@ -397,6 +416,7 @@ class CaseFile(Table):
     """The whole file."""
 
     title: str = ""
+    """For the summary and the pictures."""
     degree: Degree = Field(description="the degree of the displacement, 1 to 10")
     pressure_degree: Annotated[int, Field(ge=0, le=10)] | None = None
     """The degree of a pressure of its own (the mixed form)."""
