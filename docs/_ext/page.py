@@ -71,7 +71,7 @@ def run(page: Path, kept: Path) -> list[str]:
     with tempfile.TemporaryDirectory() as scratch, contextlib.chdir(scratch):
         if any(block.words.startswith("src/") for block in parts):
             copy_project()
-        said = [done(block, page, scope) for block in parts]
+        said = [done(block, page, scope).replace(f"{scratch}/", "") for block in parts]
         shutil.copytree(scratch, kept / "files", ignore=shutil.ignore_patterns("src", "tests"))
     (kept / "said.json").write_text(json.dumps(said), encoding="utf-8")
     return said
