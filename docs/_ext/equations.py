@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The paper's equations lead to the code that realises them, and the code leads back.
 
-Both are read from docs/map.md, which tests hold to the sources: the page of the equations gets what the
-map says of each, the map's names become links, and a docstring that speaks of an equation links to it.
+Both are read from docs/map.md, which tests hold to the sources: the page of the equations gets
+what the map says of each, the map's names become links, and a docstring that speaks of an equation
+links to it.
 """
 
 from __future__ import annotations
 
 import re
 import sys
-from pathlib import Path
 from typing import Any
 
 from page import ROOT
@@ -17,7 +17,7 @@ from sphinx.application import Sphinx
 
 sys.path.insert(0, str(ROOT / "tests"))
 
-from house import map as paper  # noqa: E402
+from house import map as paper
 
 PAGE, MAP = "theory/equations", "map"
 HEADING = re.compile(r"^### Eq\. (\d+)$", re.MULTILINE)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pages that are run when the documentation is built; one that fails, fails the build.
 
-What a block printed is shown below it, and the pictures of a page are those that its run left: a page
-`tutorials/first_face.md` shows `generated/first_face/head.png`. A page runs when it is read, which
-is whenever it has changed; `./dev docs -E` runs all of them anew.
+What a block printed is shown below it, and the pictures of a page are those that its run left: a
+page `tutorials/first_face.md` shows `generated/first_face/head.png`. A page runs when it is read,
+which is whenever it has changed; `./dev docs -E` runs all of them anew.
 """
 
 from __future__ import annotations

@@ -6,14 +6,15 @@ from __future__ import annotations
 import ast
 import inspect
 import json
+from itertools import pairwise
 from typing import Any
 
 from bezsoma.case import schema
 
 TITLE = """# Keys of the case file
 
-Read from the schema that case files are checked with: every table, its keys, what may stand there, and what
-holds where nothing does. [The case file](../../case_file.md) explains them, with examples.
+Read from the schema that case files are checked with: every table, its keys, what may stand there,
+and what holds where nothing does. [The case file](../../case_file.md) explains them, with examples.
 """
 KINDS = {
     "string": "text",
@@ -79,10 +80,10 @@ def section(name: str, heading: str, table: dict[str, Any]) -> str:
 
 def docstrings(name: str) -> dict[str, str]:
     """What stands below the fields of a class of the schema."""
-    body = ast.parse(inspect.getsource(getattr(schema, name))).body[0].body  # type: ignore[attr-defined]
+    table = ast.parse(inspect.getsource(getattr(schema, name))).body[0]
     return {
         field.target.id: inspect.cleandoc(text.value.value).replace("\n", " ")
-        for field, text in zip(body, body[1:], strict=False)
+        for field, text in pairwise(table.body)
         if isinstance(field, ast.AnnAssign)
         and isinstance(text, ast.Expr)
         and isinstance(text.value, ast.Constant)

@@ -7,13 +7,13 @@ What the first line of a block says decides what becomes of it:
 
 - `python`: run, all of a page in one namespace;
 - `sh`: run, with `bezsoma` on the path; `sh refused` has to fail;
-- `toml mine.toml`, `python src/bezsoma/x.py`: written to that file; `toml + mine.toml`: added to it;
+- `toml mine.toml`, `python src/bezsoma/x.py`: written to that file; `toml + mine.toml`: added;
 - `diff`: applied;
 - anything else is for reading.
 
 On pages that write below `src`, the folder begins as a copy of the project, and `./dev test` there
-runs tests with the package of the copy. What the blocks print and the files they leave go to KEPT, as
-`said.json` and the folder `files`. The first block that fails ends it, with its page and line.
+runs tests with the package of the copy. What the blocks print and the files they leave go to KEPT,
+as `said.json` and the folder `files`. The first block that fails ends it, with its page and line.
 """
 
 from __future__ import annotations
@@ -55,10 +55,10 @@ class Failed(Exception):
 
 
 def blocks(text: str) -> list[Block]:
-    """The fenced blocks of a page.
+    r"""The fenced blocks of a page.
 
-    >>> blocks("Look:\\n```sh refused\\nfalse\\n```\\n")
-    [Block(language='sh', words='refused', text='false\\n', line=2)]
+    >>> blocks("Look:\n```sh refused\nfalse\n```\n")
+    [Block(language='sh', words='refused', text='false\n', line=2)]
     """
     found = FENCE.finditer(text)
     return [Block(m[1], m[2] or "", m[3], text.count("\n", 0, m.start()) + 1) for m in found]
@@ -80,19 +80,20 @@ def run(page: Path, kept: Path) -> list[str]:
 def copy_project() -> None:
     """A copy of the project to change, with the core as it is built, and a `dev` that tests it."""
     for name in COPIED:
-        place, bare = ROOT / name, shutil.ignore_patterns("__pycache__")
-        _ = shutil.copytree(place, name, ignore=bare) if place.is_dir() else shutil.copy(place, name)
-    for core in built_core():
-        shutil.copy(core, "src/bezsoma")
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(ROOT / name, name)
+    shutil.copy(built_core(), "src/bezsoma")
     Path("dev").write_text(DEV.format(python=sys.executable), encoding="utf-8")
     Path("dev").chmod(0o755)
 
 
-def built_core() -> list[Path]:
+def built_core() -> Path:
     """The compiled core of the package that is installed."""
     import bezsoma._core as core
 
-    return [Path(str(core.__file__))]
+    return Path(str(core.__file__))
 
 
 def done(block: Block, page: Path, scope: dict[str, Any]) -> str:

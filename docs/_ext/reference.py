@@ -8,17 +8,17 @@ import pkgutil
 import sys
 from pathlib import Path
 
+import keys
+from page import ROOT
 from sphinx.application import Sphinx
 from sphinx.config import Config
 
 import bezsoma
-import keys
-from page import ROOT
 from bezsoma.cli import app as commands
 
 sys.path.insert(0, str(ROOT / "tests"))
 
-from house import installed  # noqa: E402
+from house import installed
 
 ORDER = (
     "results",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Links that lead out of the project: as the build has no network, their form and where they go.
 
-Links between pages are checked when the pages are built, anchors among them (tests/house/test_readme.py
-does the files); what is behind an address outside, nobody here can see. So an address has to be https and
-at a host that somebody has looked at, and a doi as dois are.
+Links between pages are checked when the pages are built, anchors among them (test_readme.py does
+the files); what is behind an address outside, no test can see. So an address has to be https and
+at a host that is on the list, and a doi as dois are.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ HOSTS = {
     "semver.org",
     "toml.io",
 }
-"""Hosts that pages and sources may name; another is added here by one who has opened it."""
+"""Hosts that pages and sources may name; another one is a decision."""
 
 
 def closed(address: str) -> str:
@@ -64,9 +64,7 @@ def test_addresses_are_whole_and_at_known_hosts(root: Path) -> None:
 
 
 def test_dois_are_dois(root: Path) -> None:
-    found = [
-        (file, closed(doi)) for file, text in texts(root).items() for doi in DOI.findall(text)
-    ]
+    found = [(file, closed(doi)) for file, text in texts(root).items() for doi in DOI.findall(text)]
     assert len(found) > 50
     assert [f"{file}: {doi}" for file, doi in found if not IS_DOI.fullmatch(doi)] == []
 

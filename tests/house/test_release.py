@@ -30,7 +30,7 @@ def test_the_version_stands_in_one_place(project: dict[str, Any], root: Path) ->
     assert run.stdout.split() == ["bezsoma", stated]
     cited = re.search(r"^version: (.+)$", (root / "CITATION.cff").read_text(), re.MULTILINE)
     assert cited is not None and cited[1] == stated
-    assert re.search(rf"^## {re.escape(stated)}$", (root / "CHANGELOG.md").read_text(), re.MULTILINE)
+    assert f"\n## {stated}\n" in (root / "CHANGELOG.md").read_text()
 
 
 def test_what_builds_and_documents_states_no_version_of_its_own(root: Path) -> None:
@@ -38,7 +38,7 @@ def test_what_builds_and_documents_states_no_version_of_its_own(root: Path) -> N
     cmake = (root / "CMakeLists.txt").read_text()
     assert re.search(r"project\(bezsoma LANGUAGES CXX\)", cmake)
     assert 'version_of("bezsoma")' in (root / "docs/conf.py").read_text()
-    assert re.search(r"__version__\s*=\s*[\"']", (root / "src/bezsoma/__init__.py").read_text()) is None
+    assert "__version__ =" not in (root / "src/bezsoma/__init__.py").read_text()
 
 
 def test_the_abi_of_wheels_is_stable_from_the_python_that_is_said(project: dict[str, Any]) -> None:
