@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -18,18 +17,21 @@ import pytest
 import bezsoma as bz
 from bezsoma import _core
 from bezsoma.arrays import Floats
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.element import lame_constants
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.errors import InputError
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Precedence, Traction
 from bezsoma.mesh import ControlNet, TetMesh, block
 from bezsoma.solvers import Solution, solve
+from bezsoma.solvers.multigrid import preconditioner
 from cases.written import case_file
 from processes import prelude
 
 THREADS = (1, 2, 5)
 SETS = _core.instruction_sets()
 PROMPT = 1.0
-"""Seconds within which Ctrl-C stops a computation."""
+"""Seconds of a processor within which Ctrl-C stops a computation."""
 LAME = np.array([[0.6, 0.4], [60.0, 4.0]])
 
 
@@ -110,6 +112,10 @@ def test_operators_come_and_go() -> None:
         operator @ net.points
         assert threads_of_this_process() == before + 4
         del operator
+        for _ in range(6000):  # a thread that was waited for may be listed a moment longer
+            if threads_of_this_process() == before:
+                break
+            time.sleep(0.01)
     assert threads_of_this_process() == before
 
 
@@ -125,19 +131,30 @@ def threads_of_this_process() -> int:
 
 
 def test_other_python_threads_run_on_during_a_solve() -> None:
-    body, ticks, done = moved(4, (7, 7, 7)), [time.monotonic()], threading.Event()
+    """A solve whose report is C runs no byte code: what others do within it, the core let them."""
+    body, ticks, done = moved(4, (7, 7, 7)), list[int](), threading.Event()
+    net = ControlNet(body.mesh, 4)
+    operator = MatrixFree(net, lame_constants(body), 2)
+    held = prescribed(body, net).mask
+    blocks, b = preconditioner(operator, held), np.where(held, 0, np.sin(9 * net.points))
+    size = float(np.linalg.norm(b))
 
     def tick() -> None:
-        while not done.wait(0.002):
-            ticks.append(time.monotonic())
+        while not done.wait(0.001):
+            ticks.append(1)
+
+    def ticks_within_a_solve() -> int:
+        x, before = np.zeros_like(b), len(ticks)
+        blocks.solve(b, x, size, 1e-12, 200, max)
+        return len(ticks) - before
 
     clock = threading.Thread(target=tick)
     clock.start()
-    solution = solve(body, solver="multigrid", threads=2)
-    done.set()
-    clock.join()
-    assert len(ticks) > 100 * solution.timings["solving"]
-    assert np.diff(ticks).max() < 0.5
+    try:
+        assert any(ticks_within_a_solve() > 20 for _ in range(100))
+    finally:
+        done.set()
+        clock.join()
 
 
 def test_two_solves_at_once() -> None:
@@ -160,6 +177,8 @@ def test_two_solves_at_once() -> None:
 
 SHARED = """
 import threading, numpy as np
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.element import lame_constants
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.mesh import ControlNet, block
 net = ControlNet(block(cells=8), 3)
@@ -180,7 +199,7 @@ def test_one_operator_in_two_threads() -> None:
     """They take turns; without a lock they would take each other's jobs, and hang or be wrong."""
     with script(SHARED) as child:
         try:
-            out, err = child.communicate(timeout=15)
+            out, err = child.communicate(timeout=200)
         except subprocess.TimeoutExpired:
             child.kill()
             pytest.fail("two threads that apply one operator wait for each other for ever")
@@ -200,46 +219,44 @@ def script(text: str, *arguments: str) -> subprocess.Popen[str]:
 # ------------------------------------------------------------------ Ctrl-C
 
 INTERRUPTED = """
-import signal, bezsoma as bz
+import signal, time, bezsoma as bz
+cells, degree, stage, delay = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], float(sys.argv[4])
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
-mesh = bz.block(cells=int(sys.argv[1]))
+signal.signal(signal.SIGPROF, lambda number, frame: signal.raise_signal(signal.SIGINT))
+mesh = bz.block(cells=cells)
 supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]
-body = bz.Body(mesh, int(sys.argv[2]), bz.LinearElastic(1.0, 0.49), supports)
-def progress(stage, fraction, note):
-    if stage == sys.argv[3]:
-        print("there", flush=True)
+body = bz.Body(mesh, degree, bz.LinearElastic(1.0, 0.49), supports)
+began = []
+def progress(now, fraction, note):
+    if now == stage and not began:
+        began.append(time.process_time())
+        signal.setitimer(signal.ITIMER_PROF, delay)
 try:
     bz.solve(body, solver="multigrid", rtol=1e-14, progress=progress)
-    print("never stopped", flush=True)
+    print("never stopped")
 except KeyboardInterrupt:
-    print("stopped", flush=True)
+    print("stopped after", time.process_time() - began[0])
 small = bz.Body(bz.block(cells=3), 3, bz.LinearElastic(1.0, 0.3), supports)
 a, b = bz.solve(small, solver="multigrid"), bz.solve(small, solver="direct")
-print("right" if abs(a.energy / b.energy - 1) < 1e-10 else "wrong", flush=True)
+print("right" if abs(a.energy / b.energy - 1) < 1e-10 else "wrong")
 """
 
 
-@pytest.mark.parametrize("delay", [0.0, 0.4])
-@pytest.mark.parametrize(("stage", "degree", "cells"), [("solving", 4, 12), ("numbering", 2, 24)])
+@pytest.mark.skipif(sys.platform == "win32", reason="no such signals")
+@pytest.mark.parametrize("delay", [0.001, 0.4])
+@pytest.mark.parametrize(("stage", "degree", "cells"), [("solving", 4, 14), ("numbering", 2, 24)])
 def test_ctrl_c_stops_it_and_python_goes_on(
-    stage: str, degree: int, cells: int, delay: float
+    stage: str, degree: int, cells: int, delay: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At the start of a stage or some way into it: in Python, while setting up, in a solve."""
-    with script(INTERRUPTED, str(cells), str(degree), stage) as child:
-        assert child.stdout is not None
-        assert child.stdout.readline() == "there\n"
-        time.sleep(delay)
-        sent = time.monotonic()
-        os.kill(child.pid, signal.SIGINT)
-        said = ""
-        for said in child.stdout:  # which ends if the child dies
-            if said != "there\n":
-                break
-        took = time.monotonic() - sent
-        rest, errors = child.communicate(timeout=60)
-    assert said == "stopped\n"
-    assert took < PROMPT
-    assert rest.endswith("right\n"), errors
+    """At the start of a stage or some way into it: in Python, while setting up, in a solve.
+
+    All is told in processor time of one thread, so that a machine with other work does not show.
+    """
+    monkeypatch.setenv("BEZSOMA_THREADS", "1")
+    with script(INTERRUPTED, str(cells), str(degree), stage, str(delay)) as child:
+        out, errors = child.communicate(timeout=200)
+    assert out.startswith("stopped after ") and out.endswith("\nright\n"), (out, errors)
+    assert float(out.split()[2]) < delay + PROMPT
     assert child.returncode == 0
 
 
