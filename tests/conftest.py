@@ -7,10 +7,18 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parent.parent
 DATA = Path(os.environ.get("BEZSOMA_DATA") or ROOT.parent / "shared" / "data")
 NO_DATA = f"needs real data, and there is none at {DATA}: set BEZSOMA_DATA to where it lies"
+
+
+# The same examples in every run, so that nothing fails by chance; others are looked for by
+# ./dev test --hypothesis-profile search.
+settings.register_profile("house", derandomize=True, deadline=None)
+settings.register_profile("search", max_examples=1000, deadline=None)
+settings.load_profile("house")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

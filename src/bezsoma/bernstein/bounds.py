@@ -41,7 +41,7 @@ def bounds(
     ([1.0], [0.5])
     """
     low, high = (np.ascontiguousarray(end(nets, axis=1)) for end in (np.min, np.max))
-    if tolerance is None:
+    if tolerance is None or dim == 0:  # a single control is the value itself
         return low, high
     least = FINEST * float(np.abs(nets).max(initial=0.0))
     if not tolerance > 0 or tolerance < least:
