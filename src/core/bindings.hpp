@@ -81,6 +81,8 @@ struct Walk {
 
     ElasticTets tets() const {
         require(degree >= 1 && degree <= 10, "degree must be 1 to 10");
+        require(best_kernels().f64[degree - 1].apply != nullptr,
+                "this build of the core lacks the kernels of that degree");
         require(first.is_valid(), "this walk is used up by the preconditioner that it made");
         require(first.shape(1) == static_cast<std::size_t>(entities_of_tet(degree)),
                 "first must have a column for each entity that holds controls");

@@ -7,14 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from mutants import table
+from mutants import record, table
+from mutants.mutant import Mutant
+from mutants.planted import piece, rounds
 
 
-def test_there_are_enough_in_both_languages() -> None:
-    assert len(table.ALL) >= 20
-    assert len(table.CPP) >= 8
-    assert [m for m in table.IN_CI if not m.is_cpp] == list(table.PYTHON)
-    assert sum(m.is_cpp for m in table.IN_CI) == 3
+def test_there_are_enough_half_of_them_in_the_core() -> None:
+    assert len(table.ALL) >= 100
+    assert 2 * len(table.CPP) >= len(table.ALL)
+    kinds = [m.is_cpp for m in table.IN_CI]
+    assert kinds.count(True) >= 5 and kinds.count(False) >= 30
+    assert len({record.mark(m) for m in table.ALL}) == len(table.ALL)
 
 
 @pytest.mark.parametrize("mutant", table.ALL, ids=[mutant.what for mutant in table.ALL])
@@ -22,3 +25,48 @@ def test_each_stands_once_in_its_file(mutant: table.Mutant, root: Path) -> None:
     assert (root / mutant.file).read_text(encoding="utf-8").count(mutant.old) == 1
     assert mutant.old != mutant.new
     assert all((root / test.split("::")[0]).exists() for test in mutant.tests)
+
+
+def test_one_build_holds_nearly_all_errors_of_the_core(root: Path) -> None:
+    together = rounds(root, list(table.CPP))
+    assert len(together[0]) >= len(table.CPP) - 10
+    assert sum(map(len, together)) == sum(not m.compiled for m in table.CPP)
+
+
+TEXTS = {
+    "an index": ("    y += a[i] * b;", "a[i]", "a[0]", "    y += a[ (E ? (0) : (i))] * b;"),
+    "a factor": ("x = p * (q + r);", "(q + r)", "(q - r)", "x = p * ( (E ? (q - r) : (q + r)));"),
+    "a statement": ("\n  run();\n", "run();", ";", "\n  if (E) { ; } else { run(); }\n"),
+    "what is declared": (
+        "\n  const int n = m;",
+        "n = m;",
+        "n = 2;",
+        "\n  const int n = (E ? (2) : (m));",
+    ),
+    "what is returned": ("{ return a * b; }", "a * b", "a", "{ return  (E ? (a) : (a * b)); }"),
+    "an argument": ("f(a, g(b), c);", "g(b)", "g(d)", "f(a, g( (E ? (d) : (b))), c);"),
+    "two arguments": ("x = f(a, b);", "a, b", "b, a", "x = (E ? (f(b, a)) : (f(a, b)));"),
+    "of a template": (
+        "x = f<2, n>(r);",
+        "n>",
+        "n - 3>",
+        "x = (E ? (f<2, n - 3>(r)) : (f<2, n>(r)));",
+    ),
+    "a comparison": ("if (a < b && c)", "< b", "< 0", "if ( (E ? (a < 0 && c) : (a < b && c)))"),
+    "a choice": ("x = a ? -b : b;", "-b", "b", "x = a ? (E ? (b) : (-b)): b;"),
+}
+
+
+@pytest.mark.parametrize(("text", "old", "new", "both"), TEXTS.values(), ids=TEXTS)
+def test_both_texts_stand_where_one_can_be_chosen(text: str, old: str, new: str, both: str) -> None:
+    begin, end, instead = piece(text, Mutant("", "x.cpp", old, new, ()), 7)
+    found = text[:begin] + instead + text[end:]
+    assert found == both.replace("E ", "bezsoma_error == 7 ").replace("(E)", "(bezsoma_error == 7)")
+
+
+def test_the_score_and_what_nothing_notices_is_argued() -> None:
+    for errors in (table.CPP, table.PYTHON):
+        known, noticed = record.judged(errors)
+        assert noticed >= 0.9 * known
+    assert [m.what for m in record.missed() if not m.argued] == []
+    assert record.PAGE.read_text(encoding="utf-8") == record.page()

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
-from time import perf_counter
+import sys
+import tracemalloc
+from types import FrameType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -121,15 +124,35 @@ def test_frames_and_units_do_not_matter() -> None:
         assert motions(net, held) == 0
 
 
-def test_quick_on_many_tets() -> None:
-    mesh = block(cells=24)
+def calls_on(cells: int) -> tuple[int, float]:
+    """How many calls of Python it takes to look at a held block, and the most bytes a tet."""
+    mesh = block(cells=cells)
     net = ControlNet(mesh, 2)
     held = np.zeros((net.count, 3), bool)
     held[net.of_place("bottom")] = True
     assert len(net.of_tet)
-    start = perf_counter()
-    refuse_rigid_motions(net, held)
-    assert perf_counter() - start < 5
+    calls = 0
+
+    def count(frame: FrameType, event: str, argument: Any) -> None:
+        nonlocal calls
+        calls += event == "call"
+
+    tracemalloc.start()
+    sys.setprofile(count)
+    try:
+        refuse_rigid_motions(net, held)
+    finally:
+        sys.setprofile(None)
+        most = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    return calls, most / len(mesh.tets)
+
+
+def test_many_tets_are_no_more_steps() -> None:
+    """Nothing is done tet by tet, nor kept for pairs of them."""
+    few, many = calls_on(6), calls_on(18)
+    assert many[0] < few[0] + 100
+    assert many[1] < 2 * few[1]
 
 
 def test_supports_of_a_body_hold_it() -> None:

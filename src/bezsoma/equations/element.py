@@ -52,8 +52,8 @@ def lame_constants(body: Body) -> Floats:
     for region, material in zip(body.mesh.regions, body.material_of_region, strict=True):
         if not isinstance(material, LinearElastic):
             raise InputError(
-                f"region {region!r} is {material!r}; solve() knows linear elasticity only so "
-                "far: give LinearElastic(E=..., nu=...)"
+                f"region {region!r} is {material!r}, which has no Lame constants; where they are "
+                "asked for every region needs LinearElastic(E=..., nu=...)"
             )
         laws.append((material.lam, material.mu))
     return frozen(np.array(laws))

@@ -171,7 +171,7 @@ def _box(labels: Labels, settings: DomainSettings) -> tuple[Floats, Floats, Bool
     if not (high - low > SMALLEST).all():
         raise InputError(
             f"the domain would reach from {_said(low)} to {_said(high)} mm, thinner than "
-            f"{SMALLEST:g} mm; no face fits in"
+            f"{SMALLEST:g} mm; no face fits in: move its planes apart"
         )
     ends = labels.frame.points(np.array([[0, 0, 0], np.array(labels.values.shape[::-1]) - 1]))
     if np.allclose(labels.frame.axes, np.eye(3), atol=1e-6):

@@ -72,7 +72,10 @@ def body(volume: Volume, settings: LabelSettings) -> Bools:
     core = _largest(deep > radius)
     del deep
     if not core.any():
-        raise InputError(f"nothing in the picture is thicker than {2 * settings.thin:g} mm")
+        raise InputError(
+            f"nothing in the picture is thicker than {2 * settings.thin:g} mm; a head is: is it in "
+            "mm and HU, and in view? Otherwise take a smaller thin="
+        )
     opened = distance(~core, spacing) <= radius
     del core
     return np.asarray(opened & solid)

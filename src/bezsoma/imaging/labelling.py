@@ -154,5 +154,8 @@ def _on(mask: Volume, volume: Volume) -> Volume:
     origin = mask.frame.points(np.array([-1, -1, -1]))
     framed = replace(framed, frame=replace(mask.frame, origin=origin))
     if not (framed.values.any()):
-        raise InputError("a segment is empty")
+        raise InputError(
+            "a segment of the segmentation is empty: no voxel is in it; fill it where it was made, "
+            "or leave it out"
+        )
     return framed.resampled(volume.frame, volume.shape, order=0)

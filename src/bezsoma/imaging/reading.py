@@ -68,7 +68,9 @@ def read_volume(
             volume = read_series(place, reader, series, interpolate)
         else:
             if series is not None:
-                raise InputError(f"{path} is one file; series= chooses within a DICOM folder")
+                raise InputError(
+                    f"{path} is one file, and series= chooses within a DICOM folder; leave it out"
+                )
             answer, values = reader.answer(
                 str(path), what="image", path=str(place), io=_io(place), most=MOST_VOXELS,
                 layers=False,
@@ -226,9 +228,14 @@ def _scalars(
             " one"
         )
     if values is None:
-        raise InputError(f"{path}: it is no volume: {answer['size']}")
+        raise InputError(
+            f"{path}: a picture of {answer['size']} voxels is no volume; give the whole CT"
+        )
     if values.dtype.kind not in "iuf":
-        raise InputError(f"{path}: voxels of type {answer['type']} are no Hounsfield units")
+        raise InputError(
+            f"{path}: voxels of type {answer['type']} are no Hounsfield units; export the CT with "
+            "whole numbers of 16 bits, or with real ones"
+        )
     if values.dtype.itemsize == 1 and hounsfield is None:
         raise InputError(
             f"{path}: voxels of 8 bits are grey values, not Hounsfield units; export 16 bits, or "
@@ -242,9 +249,14 @@ def _check_size(volume: Volume) -> None:
     lengths = np.array(volume.shape) * volume.frame.spacing
     said = " x ".join(f"{x:.4g}" for x in lengths) + " mm"
     if lengths.max() > LONGEST:
-        raise InputError(f"the picture measures {said}, longer than any person: is it in mm?")
+        raise InputError(
+            f"the picture measures {said}, longer than any person: is it in mm? Export it again"
+        )
     if lengths.min() < SHORTEST:
-        raise InputError(f"the picture measures {said}: too thin for a head, or not in mm")
+        raise InputError(
+            f"the picture measures {said}: too thin for a head, or not in mm; give the whole CT, "
+            "or export it again"
+        )
 
 
 def _in_hounsfield(volume: Volume, given: tuple[float, float] | None) -> Volume:
@@ -266,7 +278,10 @@ def _in_hounsfield(volume: Volume, given: tuple[float, float] | None) -> Volume:
             "hounsfield=(slope, intercept)"
         )
     if high > MOST or high < AIR:
-        raise InputError(f"values from {low:g} to {high:g} are no Hounsfield units of a head")
+        raise InputError(
+            f"values from {low:g} to {high:g} are no Hounsfield units of a head (air -1000, bone "
+            "some 300 to 2000); export the CT again, or say hounsfield=(slope, intercept)"
+        )
     if low < LEAST:
         notes.append(f"padding below {LEAST} HU (down to {low:g}) is taken as air")
     whole = np.empty(values.shape, np.int16)

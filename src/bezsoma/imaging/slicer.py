@@ -52,14 +52,19 @@ def read_landmarks(path: str | os.PathLike[str]) -> dict[str, Floats]:
                 )
             found[label] = _position(path, label, point.get("position")) * turn
     if not found:
-        raise InputError(f"{path} holds no landmark with a position")
+        raise InputError(
+            f"{path} holds no landmark with a position; place one in 3D Slicer and save it again"
+        )
     return found
 
 
 def _listed(path: object, content: Any, key: str) -> list[Any]:
     part = content.get(key) if isinstance(content, dict) else None
     if not isinstance(part, list):
-        raise InputError(f"{path} has no list {key!r}: it is no file of markups of 3D Slicer")
+        raise InputError(
+            f"{path} has no list {key!r}: it is no file of markups of 3D Slicer; give one "
+            "(.mrk.json)"
+        )
     return part
 
 
@@ -125,7 +130,10 @@ def write_surface(
     if triangles.ndim != 2 or triangles.shape[1] != 3:
         raise InputError(f"triangles of shape {triangles.shape}; (t, 3) is needed")
     if triangles.size and not 0 <= triangles.min() <= triangles.max() < len(points):
-        raise InputError("triangles name points that are not there")
+        raise InputError(
+            f"triangles name points {triangles.min()} to {triangles.max()}, and there are "
+            f"{len(points)}; number them from 0 to {len(points) - 1}"
+        )
     whole(
         place, {".stl": _stl, ".ply": _ply, ".obj": _obj}[place.suffix.lower()](points, triangles)
     )

@@ -87,7 +87,10 @@ class BrokenField:
     def elevated(self, degree: int) -> BrokenField:
         """The same polynomials, written in a higher degree."""
         if degree < self.degree:
-            raise InputError(f"degree {self.degree} cannot be lowered to {degree} without loss")
+            raise InputError(
+                f"degree {self.degree} cannot be lowered to {degree} without loss; give "
+                f"{self.degree} or more"
+            )
         matrix = bernstein.elevation(self.degree, 3, degree - self.degree)
         raised = np.moveaxis(np.tensordot(matrix, self.controls, (1, 1)), 0, 1)
         return BrokenField(self.mesh, degree, raised)

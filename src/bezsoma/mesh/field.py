@@ -134,7 +134,10 @@ class Field:
         """
         net = ControlNet(self.mesh, degree)
         if degree < self.degree:
-            raise InputError(f"degree {self.degree} cannot be lowered to {degree} without loss")
+            raise InputError(
+                f"degree {self.degree} cannot be lowered to {degree} without loss; give "
+                f"{self.degree} or more"
+            )
         return Field(net, net.elevated(self.controls, self.net))
 
     def subdivided(self, into: Subdivision | None = None) -> Field:

@@ -77,7 +77,9 @@ def line_through(mesh: TetMesh, start: npt.ArrayLike, end: npt.ArrayLike) -> Lin
     first, last = finite(np.stack([np.asarray(start, float), np.asarray(end, float)]))
     length = float(np.linalg.norm(last - first))
     if not length > 0:
-        raise InputError(f"a line from {first.tolist()} to the same point has no direction")
+        raise InputError(
+            f"a line from {first.tolist()} to the same point has no direction; give two that differ"
+        )
     stops = _stops(mesh, first, last)
     tets, _ = Locator(mesh).tets_of(_between(first, last, (stops[1:] + stops[:-1]) / 2))
     held = (tets >= 0) & (np.diff(stops) > _NOTHING)

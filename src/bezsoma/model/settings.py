@@ -65,7 +65,9 @@ def read_settings(path: Path | str) -> ModelSettings:
     try:
         tables = tomllib.loads(place.read_text(encoding="utf-8"))
     except FileNotFoundError:
-        raise InputError(f"no file of settings {str(path)!r}") from None
+        raise InputError(
+            f"no file of settings {str(path)!r}; give a .toml file, or leave it out"
+        ) from None
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{place.name}: this is not readable TOML: {error}") from None
     try:

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How many lines the tests run: ./dev coverage.
+
+Of Python by the whole suite; of the core by the tests that work it hardest, with a core of its own
+that counts: one set of kernels, of low degrees. Both are lines that some test *runs*; whether a
+test would notice that they are wrong is what the deliberate errors tell.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from mutants.run import WITHOUT_KERNELS
+from mutants.workshop import UP_TO, Workshop
+
+PROJECT = Path(__file__).resolve().parents[2]
+OF_PYTHON, OF_THE_CORE = 95, 90
+"""Per cent, at least."""
+CORE_TESTS = (
+    "tests/laws/test_assembled.py",
+    "tests/laws/test_cholesky.py",
+    "tests/laws/test_control_net.py",
+    "tests/laws/test_element.py",
+    "tests/laws/test_laws_core.py",
+    "tests/laws/test_levels.py",
+    "tests/laws/test_matrix_free.py",
+    "tests/laws/test_mesh_shape.py",
+    "tests/laws/test_mesh_tets.py",
+    "tests/laws/test_mixed_free.py",
+    "tests/laws/test_multigrid.py",
+    "tests/laws/test_pickles.py",
+    "tests/laws/test_pointwise_free.py",
+    "tests/faults/test_core.py",
+    "tests/faults/test_hard_problems.py",
+    "tests/faults/test_meshes.py",
+    "tests/paper/test_equations.py",
+)
+
+
+def main() -> int:
+    """Measure what is asked for; the status is 0 if it is enough."""
+    parser = argparse.ArgumentParser(prog="./dev coverage", description=__doc__)
+    parser.add_argument("part", nargs="?", choices=("python", "core"), help="one of the two")
+    parser.add_argument("--jobs", default=str(min(8, os.cpu_count() or 1)), help="how many at once")
+    options = parser.parse_args()
+    parts = {"python": python, "core": core}
+    chosen = [options.part] if options.part else list(parts)
+    return max(parts[part](options.jobs) for part in chosen)
+
+
+def python(jobs: str) -> int:
+    """Lines of Python, by the whole suite and what it starts."""
+    report = ["--cov", "--cov-report=term-missing:skip-covered", f"--cov-fail-under={OF_PYTHON}"]
+    command = [sys.executable, "-m", "pytest", "-q", "-n", jobs, "--dist", "worksteal", *report]
+    threads = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
+    return subprocess.run(command, cwd=PROJECT, env=os.environ | threads, check=False).returncode
+
+
+def core(jobs: str) -> int:
+    """Lines of the core."""
+    with tempfile.TemporaryDirectory(prefix="bezsoma-covered-") as scratch:
+        shop = Workshop(PROJECT, Path(scratch))
+        shop.configure(
+            f"-DBEZSOMA_KERNEL_OPTIONS=-O0;{UP_TO}",
+            "-DCMAKE_CXX_FLAGS=--coverage -fprofile-update=atomic",
+            "-DCMAKE_CXX_FLAGS_RELEASE=",
+        )
+        shop.make()
+        verdict = shop.verdict(CORE_TESTS, -1, "-rfE")
+        failed = [why for why in verdict.failures().values() if WITHOUT_KERNELS not in why]
+        if failed or (verdict.status and not verdict.failures()):
+            raise SystemExit(f"the tests fail: {failed or verdict.words}")
+        report = ["--fail-under-line", str(OF_THE_CORE), "--sort", "uncovered-percent"]
+        where = ["--root", str(shop.folder), "--filter", "src/core/", str(shop.build)]
+        command = [sys.executable, "-m", "gcovr", "-j", jobs, *report, *where]
+        return subprocess.run(command, cwd=shop.folder, check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
