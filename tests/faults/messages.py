@@ -8,9 +8,9 @@ where a test expects an error and what the commands say when they refuse.
 from __future__ import annotations
 
 import io
+import os
 import re
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -50,22 +50,17 @@ class Fault(NamedTuple):
 
 
 class Notes:
-    """A plugin of pytest that notes messages."""
+    """The messages that were heard, each once."""
 
     def __init__(self) -> None:
         self.found: dict[Fault, None] = {}
-        self.test = ""
-
-    @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_call(self, item: pytest.Item) -> Iterator[None]:
-        self.test = item.nodeid.removeprefix("tests/faults/")
-        return (yield)
 
     def note(self, message: str) -> None:
         """Remember a message of the test that runs; places of this machine are left out."""
         text = re.sub(r"/\S*/pytest-of-[^/]+/pytest-\d+/[^/\s]+/", "", message.strip())
         text = text.replace(f"{ROOT}/", "").replace(str(Path(sys.prefix)), "...")
-        self.found[Fault(self.test, re.sub(r" at 0x[0-9a-f]+", "", text))] = None
+        test = os.environ["PYTEST_CURRENT_TEST"].rsplit(" (", 1)[0].removeprefix("tests/faults/")
+        self.found[Fault(test, re.sub(r" at 0x[0-9a-f]+", "", text))] = None
 
     def listen(self, patch: pytest.MonkeyPatch) -> None:
         """Hear what `pytest.raises` meets and what the commands print when they refuse."""
@@ -140,7 +135,7 @@ def main() -> int:
     notes = Notes()
     with pytest.MonkeyPatch.context() as patch:
         notes.listen(patch)
-        status = pytest.main(["-q", "-p", "no:cacheprovider", "tests/faults"], plugins=[notes])
+        status = pytest.main(["-q", "-p", "no:cacheprovider", "tests/faults"])
     if status == 0:
         PAGE.write_text(page(list(notes.found)), encoding="utf-8")
     return int(status)
