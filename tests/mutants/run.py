@@ -18,8 +18,7 @@ from mutants.planted import rounds
 from mutants.workshop import Verdict, Workshop
 
 PROJECT = Path(__file__).resolve().parent.parent.parent
-ALL_PASSED, SOME_FAILED, INTERRUPTED, NOTHING_LEFT = 0, 1, 2, 5
-WITHOUT_KERNELS = "lacks the kernels of that degree"
+ALL_PASSED, SOME_FAILED, INTERRUPTED = 0, 1, 2
 
 
 def main() -> int:
@@ -66,10 +65,10 @@ def in_python(mutants: list[Mutant], scratch: Path, options: argparse.Namespace)
         try:
             with shop.harmed(mutant.file, mutant.old, mutant.new):
                 verdict = shop.verdict(mutant.tests)
-            believe(shop, mutant, verdict)
+            sound = is_sound(shop, mutant, verdict)
         finally:
             shops.put(shop)
-        return told(mutant, verdict, time.monotonic() - start, options)
+        return told(mutant, verdict, sound, time.monotonic() - start, options)
 
     with ThreadPoolExecutor(options.jobs) as pool:
         found = list(pool.map(noticed, mutants))
@@ -87,62 +86,53 @@ def in_the_core(mutants: list[Mutant], scratch: Path, options: argparse.Namespac
         shop.plant(together)
         numbers = range(len(together))
         with ThreadPoolExecutor(options.jobs) as pool:
-            found += pool.map(lambda m, n: planted(shop, m, n, options), together, numbers)
+            found += pool.map(lambda m, n: chosen_in(shop, m, n, options), together, numbers)
     for mutant in mutants:
         if mutant.compiled:
             with shop.harmed(mutant.file, mutant.old, mutant.new):
                 shop.plant([])
-            found.append(planted(shop, mutant, -1, options))
+            start = time.monotonic()
+            verdict = shop.verdict(mutant.tests)
+            found.append(told(mutant, verdict, True, time.monotonic() - start, options))
     shop.close()
     return found
 
 
-def planted(shop: Workshop, mutant: Mutant, number: int, options: argparse.Namespace) -> bool:
-    """Whether an error that stands in the built core is noticed.
-
-    What asks for kernels that are not built is left out, and asked again without.
-    """
+def chosen_in(shop: Workshop, mutant: Mutant, number: int, options: argparse.Namespace) -> bool:
+    """Whether an error that stands in the built core is noticed when it is chosen."""
     start = time.monotonic()
-    while True:
-        left_out = [f"--deselect={test}" for test in sorted(WITHOUT)]
-        verdict = shop.verdict((*mutant.tests, *left_out), number)
-        lacking = {t for t, why in verdict.failures().items() if WITHOUT_KERNELS in why}
-        if not lacking:
-            break
-        WITHOUT.update(lacking)
-    if number >= 0:
-        believe(shop, mutant, verdict)
-    return told(mutant, verdict, time.monotonic() - start, options)
+    verdict = shop.verdict(mutant.tests, number)
+    sound = is_sound(shop, mutant, verdict)
+    return told(mutant, verdict, sound, time.monotonic() - start, options)
 
 
-WITHOUT: set[str] = set()
-"""Tests that need kernels that are not built for errors."""
 SOUND: set[tuple[str, ...]] = set()
 """Tests that are known to pass without any error."""
 
 
-def believe(shop: Workshop, mutant: Mutant, verdict: Verdict) -> None:
-    """Check that what noticed an error passes without; otherwise its failing would mean nothing."""
-    if verdict.status == ALL_PASSED:
-        return
-    first = tuple(verdict.failures())[:1] or mutant.tests
-    if first in SOUND:
-        return
-    left_out = [f"--deselect={test}" for test in sorted(WITHOUT)]
-    without = shop.verdict((*first, *left_out))
-    if without.status != ALL_PASSED:
-        raise SystemExit(f"the tests fail without any deliberate error: {without.words}")
+def is_sound(shop: Workshop, mutant: Mutant, verdict: Verdict) -> bool:
+    """Whether what noticed an error passes without; otherwise its failing would mean nothing."""
+    first = verdict.first_failure() or mutant.tests
+    if verdict.status == ALL_PASSED or first in SOUND:
+        return True
+    if shop.verdict(first).status != ALL_PASSED:
+        return False
     SOUND.add(first)
+    return True
 
 
-def told(mutant: Mutant, verdict: Verdict, seconds: float, options: argparse.Namespace) -> bool:
+def told(
+    mutant: Mutant, verdict: Verdict, sound: bool, seconds: float, options: argparse.Namespace
+) -> bool:
     """Whether the tests noticed an error; says so in a line."""
     noticed = verdict.status in (SOME_FAILED, INTERRUPTED) or verdict.status < 0
-    if not noticed and verdict.status not in (ALL_PASSED, NOTHING_LEFT):
-        raise SystemExit(f"{mutant.what}: the tests could not run: {verdict.words}")
-    print(f"{'noticed' if noticed else 'MISSED'} in {seconds:.0f} s  {mutant.file}: {mutant.what}")
     words = verdict.words if verdict.status >= 0 else f"signal {-verdict.status}"
-    print(f"        by {words if noticed else 'none of ' + ', '.join(mutant.tests)}", flush=True)
+    where = f"{seconds:.0f} s  {mutant.file}: {mutant.what}"
+    if not sound or not (noticed or verdict.status == ALL_PASSED):
+        print(f"NO VERDICT in {where}\n        fails without any error too: {words}", flush=True)
+        return False
+    by = words if noticed else f"none of {', '.join(mutant.tests)}"
+    print(f"{'noticed' if noticed else 'MISSED'} in {where}\n        by {by}", flush=True)
     if options.record:
         record.add(mutant, words if noticed else None)
     return noticed

@@ -37,11 +37,10 @@ class Verdict(NamedTuple):
     words: str
     text: str
 
-    def failures(self) -> dict[str, str]:
-        """The tests that failed, and in a word why."""
+    def first_failure(self) -> tuple[str, ...]:
+        """The first test that failed, alone, or none."""
         lines = [line for line in self.text.splitlines() if line.startswith(("FAILED ", "ERROR "))]
-        found = (line.split(" ", 1)[1].partition(" - ") for line in lines)
-        return {test: why for test, _, why in found}
+        return tuple(line.split(" ", 1)[1].partition(" - ")[0] for line in lines[:1])
 
 
 class Workshop:
@@ -123,9 +122,9 @@ class Workshop:
         while not self.idle.empty():
             self.idle.get().close()
 
-    def verdict(self, tests: Sequence[str], chosen: int = -1, *more: str) -> Verdict:
+    def verdict(self, tests: Sequence[str], chosen: int = -1) -> Verdict:
         """What these tests say about the copy as it is now, with the planted error of a number."""
-        options = ["-q", "-p", "no:cacheprovider", "--no-header", "--tb=line", *(more or ["-x"])]
+        options = ["-q", "-p", "no:cacheprovider", "--no-header", "--tb=line", "-x"]
         try:
             server = self.idle.get_nowait()
         except Empty:
