@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from bezsoma.model import run_model as run_model
     from bezsoma.refinement.estimates import energy_estimate as energy_estimate
     from bezsoma.refinement.estimates import goal_estimate as goal_estimate
+    from bezsoma.refinement.estimates import vector_estimate as vector_estimate
     from bezsoma.refinement.goals import InnerMean as InnerMean
     from bezsoma.refinement.goals import PatchMean as PatchMean
     from bezsoma.refinement.goals import SurfaceMean as SurfaceMean
@@ -122,7 +123,7 @@ HOMES = {
     "bezsoma.mesh.split": ["split"],
     "bezsoma.mesh.subdivision": ["Subdivision", "subdivision"],
     "bezsoma.mesh.tets": ["TetMesh"],
-    "bezsoma.refinement.estimates": ["energy_estimate", "goal_estimate"],
+    "bezsoma.refinement.estimates": ["energy_estimate", "goal_estimate", "vector_estimate"],
     "bezsoma.refinement.goals": ["InnerMean", "PatchMean", "SurfaceMean"],
     "bezsoma.refinement.levels": ["Refined"],
     "bezsoma.refinement.loop": ["refined"],

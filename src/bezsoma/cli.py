@@ -269,12 +269,15 @@ def film(
     frames: Annotated[int, Parameter(help="pictures in the film")] = 36,
     seconds: Annotated[float, Parameter(help="how long it lasts")] = 4.5,
     output: Annotated[
-        Path | None, Parameter(OUTPUT, help="the GIF to write; where not given, RESULTS.gif")
+        Path | None,
+        Parameter(
+            OUTPUT, help="the .gif, or with the extra film the .mp4, to write; else RESULTS.gif"
+        ),
     ] = None,
     overwrite: Annotated[bool, Parameter(negative="", help="replace that file")] = False,
     quiet: Quiet = False,
 ) -> int:
-    """Film the movement in a results folder, as an animated GIF.
+    """Film the movement in a results folder, as an animated GIF or an MP4.
 
     The movement goes to and fro while the viewer walks around.
     """

@@ -21,6 +21,7 @@ SPECIAL = [
     "rich",
     "SimpleITK",
     "h5py",
+    "av",
 ]
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,12 @@ from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.mesh.solids import block, cook, l_block
 from bezsoma.mesh.tets import TetMesh
-from bezsoma.refinement.estimates import GoalEstimate, energy_estimate, goal_estimate
+from bezsoma.refinement.estimates import (
+    GoalEstimate,
+    energy_estimate,
+    goal_estimate,
+    vector_estimate,
+)
 from bezsoma.refinement.goals import InnerMean, PatchMean, SurfaceMean
 from bezsoma.refinement.means import mean
 from bezsoma.refinement.products import linear_product
@@ -170,6 +176,35 @@ def test_other_forms_beside_a_richer_answer(law: object, how: dict[str, Any]) ->
     for goal in (TOP, PatchMean("right", at=(1, 0.3, 0.6), radius=0.4, direction="x")):
         judged = goal_estimate(solution, goal, richer=richer)
         assert 0.5 < effectivity(judged, mean(goal, truth.displacement) - judged.value) < 2
+
+
+@pytest.mark.parametrize(
+    ("law", "how"),
+    [
+        (LinearElastic(E=1.0, nu=0.3), {}),
+        (LinearElastic(E=1.0, nu=0.5), {"incompressible": True}),
+        (NeoHooke(E=1.0, nu=0.3), {}),
+    ],
+    ids=["linear", "incompressible", "neo-Hooke"],
+)
+def test_a_vector_lacks_what_its_components_do(law: object, how: dict[str, Any]) -> None:
+    """Beside three goals, and beside the truth of a higher degree."""
+    higher = {**how, "pressure_degree": 4} if how else {}
+    solution, truth = solve(pressed(2, law, **how)), solve(pressed(5, law, **higher))
+    richer = raised(solution)
+    found = vector_estimate(solution, TOP, richer=richer)
+    goals = [replace(TOP, direction=axis) for axis in "xyz"]
+    single = [goal_estimate(solution, goal, richer=richer) for goal in goals]
+    assert np.allclose(found.value, [each.value for each in single], rtol=1e-12, atol=0)
+    apart = np.abs(found.error - [each.error for each in single])
+    assert (apart < 0.02 * np.array([each.product for each in single])).all()
+    assert found.along.goal.direction @ found.error == pytest.approx(np.linalg.norm(found.error))
+    true = [
+        mean(goal, truth.displacement) - each.value
+        for goal, each in zip(goals, single, strict=True)
+    ]
+    floor = 0.01 * found.along.product
+    assert 0.5 < found.size / max(float(np.linalg.norm(true)), floor) < 2
 
 
 def test_threads_do_not_show() -> None:

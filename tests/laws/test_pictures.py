@@ -19,14 +19,12 @@ from bezsoma.errors import InputError, MissingExtra
 from bezsoma.mesh import BrokenField, ControlNet, Field, TetMesh, ball, block
 from bezsoma.view import face_picture, picture
 from bezsoma.view.camera import VIEWS, Camera, axes, fitted
-from bezsoma.view.lattice import small_triangles
 from bezsoma.view.layout import Layout
 from bezsoma.view.rays import Scene
-from bezsoma.view.restriction import controls_on, values_at
 from bezsoma.view.shading import Layer, coverage, openness, shaded
 from bezsoma.view.sheet import colours
 from bezsoma.view.subject import Subject
-from bezsoma.view.surfaces import Surface, displaced, parts_for
+from bezsoma.view.surfaces import Surface, displaced
 from tolerances import ROUNDING
 
 SMALL = (420, 400)
@@ -122,7 +120,7 @@ def test_sides_are_marked_in_every_view(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_the_silhouette_of_a_sphere_is_within_half_a_pixel() -> None:
     mesh, rounding = sphere(5)
-    surface = displaced(mesh, mesh.boundary, rounding, 12)
+    surface = displaced(mesh, mesh.boundary, rounding, 0.25 / 6)
     for view in ("front", "three-quarter"):
         camera = Camera(axes(view), np.array([0.3, 0.1, -0.2]), 6.0, (400, 380))
         shown = coverage(camera, surface)
@@ -143,7 +141,7 @@ def test_a_displaced_surface_moves_by_the_right_number_of_pixels() -> None:
     camera = Camera(axes("left"), np.array([250.0, 152.0, 36.0]), 7.3, (420, 360))
     centres = []
     for displacement in (None, moved):
-        shown = coverage(camera, displaced(mesh, mesh.boundary, displacement, 2))
+        shown = coverage(camera, displaced(mesh, mesh.boundary, displacement))
         rows, columns = np.mgrid[:360, :420] + 0.5
         centres.append([(shown * grid).sum() / shown.sum() for grid in (columns, rows)])
     step = np.subtract(centres[1], centres[0])
@@ -153,10 +151,11 @@ def test_a_displaced_surface_moves_by_the_right_number_of_pixels() -> None:
 def test_samples_lie_on_the_displaced_polynomial() -> None:
     mesh = block(cells=(2, 2, 2))
     bend = field(mesh, 4, lambda p: np.stack([p[:, 1] ** 4, p[:, 0] * p[:, 2], p[:, 0] ** 3], 1))
-    surface = displaced(mesh, mesh.facets_of("front"), bend, 5, magnified=2.0)
-    flat = surface.bary @ mesh.points[surface.facets]
-    at = bend.at(flat.reshape(-1, 3)).reshape(flat.shape)
-    assert np.allclose(surface.points, flat + 2 * at, atol=1e-12)
+    surface = displaced(mesh, mesh.facets_of("front"), bend, 0.01, magnified=2.0)
+    assert len(surface.triangles) > 4 * len(surface.facets)
+    at = bend.at(surface.places)
+    assert np.allclose(surface.points, surface.places + 2 * at, atol=1e-12)
+    assert np.allclose(surface.at(bend), at, atol=1e-12)
 
 
 @pytest.mark.parametrize("degree", [2, 3, 6])
@@ -164,20 +163,33 @@ def test_triangles_stray_by_less_than_the_tolerance(degree: int) -> None:
     mesh = block()
     bend = field(mesh, degree, lambda p: 0.3 * np.sin(2 * p + p[:, ::-1]))
     facets = mesh.facets_of("top")
-    controls = controls_on(mesh, bend, facets)
+    inside = domain_points(4, 2)
     for tolerance in (3e-2, 3e-3):
-        parts = parts_for(controls, degree, tolerance)
-        surface = displaced(mesh, facets, bend, parts)
-        inside = domain_points(4, 2)
+        surface = displaced(mesh, facets, bend, tolerance)
         flat = inside @ surface.corners(surface.points)
-        place = inside @ surface.bary[small_triangles(parts)]
-        exact = np.stack(
-            [values_at(degree, controls, bary) + bary @ mesh.points[facets] for bary in place],
-            axis=1,
-        )
-        worst = np.linalg.norm(flat.reshape(exact.shape) - exact, axis=-1).max()
-        assert worst < tolerance and parts <= 16
-    assert parts_for(controls * 1e-9, degree, 1e-3) == 1
+        place = inside @ surface.corners(surface.places)
+        moved = bend.at(place.reshape(-1, 3), outside="nearest").reshape(place.shape)
+        worst = np.linalg.norm(flat - place - moved, axis=-1).max()
+        assert tolerance / 20 < worst < tolerance
+    assert len(displaced(mesh, facets, bend, 1e-3, magnified=1e-9).triangles) == len(facets)
+
+
+def test_a_picture_cuts_a_facet_as_often_as_it_bends_and_is_large() -> None:
+    mesh, rounding = sphere(3)
+    bent = np.linalg.norm(mesh.points[mesh.boundary].mean(axis=1) - [30, 0, 0], axis=1) < 20
+    one_side = Field(rounding.net, rounding.controls * (rounding.net.points[:, :1] > 5))
+    surface = Subject.of(mesh, None, True, one_side, 1.0).surfaces(0.3, moved=True)[0]
+    counts = [0] * len(mesh.boundary)
+    for group in surface.groups:
+        for facet in group.facets.tolist():
+            counts[facet] = len(group.cut.triangles)
+    assert min(np.array(counts)[bent]) > 1 and min(counts) == 1
+    sides = np.linalg.norm(
+        np.diff(surface.corners(surface.places)[:, [0, 1, 2, 0]], axis=1), axis=2
+    )
+    assert sides.max() < 6 / 0.3 * 1.5  # a strip between unlike edges has diagonals
+    near = Subject.of(mesh, None, True, one_side, 1.0).surfaces(3.0, moved=True)[0]
+    assert len(near.triangles) > 20 * len(surface.triangles)
 
 
 # Normals and light
@@ -185,9 +197,9 @@ def test_triangles_stray_by_less_than_the_tolerance(degree: int) -> None:
 
 def test_normals_of_a_rounded_ball_point_outwards() -> None:
     mesh, rounding = sphere(5)
-    surface = displaced(mesh, mesh.boundary, rounding, 6)
-    radial = surface.points / np.linalg.norm(surface.points, axis=2, keepdims=True)
-    cosine = np.einsum("fmd,fmd->fm", surface.normals, radial)
+    surface = displaced(mesh, mesh.boundary, rounding, 0.01)
+    radial = surface.points / np.linalg.norm(surface.points, axis=1, keepdims=True)
+    cosine = np.einsum("sd,sd->s", surface.normals, radial)
     assert np.degrees(np.arccos(np.clip(cosine, -1, 1))).max() < 0.1
 
 
@@ -195,8 +207,8 @@ def test_normals_of_a_bent_plate_are_those_of_its_formula() -> None:
     mesh = block(cells=(2, 2, 1))
     lift = field(mesh, 3, lambda p: np.stack([0 * p[:, 0], 0 * p[:, 0], p[:, 0] ** 2 * p[:, 1]], 1))
     for name, side in (("top", 1.0), ("bottom", -1.0)):
-        surface = displaced(mesh, mesh.facets_of(name), lift, 3)
-        x, y, _ = np.moveaxis(surface.bary @ mesh.points[surface.facets], -1, 0)
+        surface = displaced(mesh, mesh.facets_of(name), lift, 0.01)
+        x, y, _ = surface.places.T
         exact = side * np.stack([-2 * x * y, -(x**2), np.ones_like(x)], axis=-1)
         exact /= np.linalg.norm(exact, axis=-1, keepdims=True)
         assert np.allclose(surface.normals, exact, atol=1e-12)
@@ -204,13 +216,14 @@ def test_normals_of_a_bent_plate_are_those_of_its_formula() -> None:
 
 def test_a_block_keeps_its_edges_and_a_ball_loses_them() -> None:
     mesh = block(cells=(2, 2, 2))
-    surface = displaced(mesh, mesh.boundary, None, 2)
-    assert np.allclose(np.abs(surface.normals).max(axis=2), 1)
-    rounded = displaced(ball(1.0, 6), ball(1.0, 6).boundary, None, 2)
-    radial = rounded.points / np.linalg.norm(rounded.points, axis=2, keepdims=True)
-    assert np.einsum("fmd,fmd->fm", rounded.normals, radial).min() > np.cos(np.radians(4))
+    surface = displaced(mesh, mesh.boundary, None, longest=0.2)
+    assert np.allclose(np.abs(surface.normals).max(axis=1), 1)
+    rounded = displaced(ball(1.0, 6), ball(1.0, 6).boundary, None, longest=0.1)
+    radial = rounded.points / np.linalg.norm(rounded.points, axis=1, keepdims=True)
+    assert np.einsum("sd,sd->s", rounded.normals, radial).min() > np.cos(np.radians(4))
     shared = len(np.unique(rounded.vertex))
-    assert shared == 2 + len(rounded.facets) // 2 * 4
+    assert shared == 2 + len(rounded.triangles) // 2  # Euler: a closed surface without creases
+    assert len(rounded.triangles) > 4 * len(rounded.facets)
 
 
 def test_a_rotation_turns_the_normals() -> None:
@@ -218,15 +231,15 @@ def test_a_rotation_turns_the_normals() -> None:
     turn = np.array([[0.0, -1, 0], [0.6, 0, -0.8], [0.8, 0, 0.6]])
     assert np.isclose(np.linalg.det(turn), 1)
     spin = field(mesh, 1, lambda p: p @ turn.T - p)
-    before = displaced(mesh, mesh.boundary, None, 3)
-    after = displaced(mesh, mesh.boundary, spin, 3)
+    before = displaced(mesh, mesh.boundary, None, longest=0.3)
+    after = displaced(mesh, mesh.boundary, spin, longest=0.3)
     assert np.allclose(after.normals, before.normals @ turn.T, atol=1e-12)
 
 
 def test_a_crushed_facet_still_has_a_picture() -> None:
     mesh = block()
     crushed = field(mesh, 1, lambda p: -p)
-    surface = displaced(mesh, mesh.boundary, crushed, 2)
+    surface = displaced(mesh, mesh.boundary, crushed, longest=0.7)
     assert np.isfinite(surface.normals).all()
     shown = picture(None, mesh, displacement=crushed, size=SMALL)
     assert shown[:4] == b"\x89PNG"
@@ -244,7 +257,7 @@ def test_a_plane_sees_the_whole_sky_and_a_corner_a_part_of_it() -> None:
 
 def test_faces_towards_the_key_light_are_brighter() -> None:
     mesh = block((10.0, 10.0, 10.0))
-    surface = displaced(mesh, mesh.boundary, None, 1)
+    surface = displaced(mesh, mesh.boundary, None)
     camera = fitted("three-quarter", mesh.points, (200, 200))
     shown = shaded(camera, [Layer(surface)])
     places = {
@@ -262,7 +275,7 @@ def test_faces_towards_the_key_light_are_brighter() -> None:
 
 def test_the_nearer_surface_hides_the_farther() -> None:
     mesh = block((10.0, 10.0, 10.0))
-    near, far = (displaced(mesh, mesh.facets_of(name), None, 1) for name in ("front", "back"))
+    near, far = (displaced(mesh, mesh.facets_of(name), None) for name in ("front", "back"))
     camera = fitted("front", mesh.points, (60, 60))
     shown = shaded(camera, [Layer(far, (0, 0, 1)), Layer(near, (1, 0, 0))]).colours[30, 30]
     assert shown[0] > 0.3 and shown[0] > 3 * shown[2]
@@ -273,9 +286,9 @@ def test_skin_has_no_edges_where_a_block_has() -> None:
     mesh = mesh.with_surface("skin", mesh.boundary)
     one, plain = (Subject.of(mesh, name, True, None, 1.0) for name in ("skin", None))
     skin, sharp = (subject.surfaces(1.0, moved=False)[0] for subject in (one, plain))
-    assert skin.vertex.max() + 1 < sharp.vertex.max() + 1
-    along = np.abs(sharp.normals).max(axis=2)
-    assert np.allclose(along, 1) and np.abs(skin.normals).max(axis=2).min() < 0.8
+    assert len(np.unique(skin.vertex)) < len(np.unique(sharp.vertex))
+    along = np.abs(sharp.normals).max(axis=1)
+    assert np.allclose(along, 1) and np.abs(skin.normals).max(axis=1).min() < 0.8
 
 
 @pytest.mark.parametrize(("size", "shape"), [((1, 1, 1), 0.8), ((1, 1, 9), 0.9), ((9, 1, 1), 0.62)])
@@ -291,7 +304,7 @@ def test_the_sheet_is_as_high_as_suits_what_it_shows(
 
 def test_wires_darken_the_edges_of_facets_and_nothing_else() -> None:
     mesh = block((10.0, 10.0, 10.0))
-    surface = displaced(mesh, mesh.facets_of("front"), None, 4)
+    surface = displaced(mesh, mesh.facets_of("front"), None, longest=4.0)
     camera = Camera(axes("front"), np.array([5.0, 0.0, 5.0]), 10.0, (120, 120))
     plain, wired = (shaded(camera, [Layer(surface, wires=on)]).colours for on in (False, True))
     darker = (plain - wired).mean(axis=2)
@@ -475,7 +488,7 @@ def test_a_real_face_looks_forward(data: Path) -> None:
     skin = stored["facets"][stored["facet_tags"] == 1]
     mesh = TetMesh(stored["points"], stored["tets"], surfaces={"skin": skin})
     camera = fitted("left", mesh.points[skin].reshape(-1, 3), (400, 300))
-    shown = coverage(camera, displaced(mesh, mesh.facets_of("skin"), None, 4))
+    shown = coverage(camera, displaced(mesh, mesh.facets_of("skin"), None))
     chin = camera.pixels(np.array([248.0, 137.7, 30.0]))
     row = shown[int(chin[1])]
     # Seen from the left the face looks to the viewer's left, and the chin is its rim there.
@@ -484,5 +497,5 @@ def test_a_real_face_looks_forward(data: Path) -> None:
 
 def test_surfaces_know_which_edges_are_those_of_facets() -> None:
     mesh = block()
-    surface: Surface = displaced(mesh, mesh.facets_of("top"), None, 3)
+    surface: Surface = displaced(mesh, mesh.facets_of("top"), None, longest=0.48)
     assert surface.rims.shape == (2 * 9, 3) and surface.rims.sum() == 2 * 9

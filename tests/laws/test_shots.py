@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import io
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from PIL import Image
 
 from bezsoma.errors import InputError, MissingExtra
 from bezsoma.mesh import ControlNet, Field, TetMesh, block
-from bezsoma.view import Shot, convergence_picture, film, picture, side_by_side, window
+from bezsoma.view import Shot, convergence_picture, film, movie, picture, side_by_side, window
 from bezsoma.view.camera import Camera, around, axes, fitted, turned
 from bezsoma.view.film import angles, shares
 from bezsoma.view.overlays import Screen, control_net, wireframe
@@ -89,7 +90,7 @@ def test_a_cut_moves_with_the_body_or_cuts_it_where_it_came_to() -> None:
 
 def test_a_clipped_surface_keeps_its_area_and_its_rims() -> None:
     mesh = block((4.0, 4.0, 1.0), (2, 2, 1))
-    top = displaced(mesh, mesh.facets_of("top"), None, 3)
+    top = displaced(mesh, mesh.facets_of("top"), None, longest=1.0)
     half = clipped(top, top.points[..., 0] - 1.7)
     a, b, c = np.moveaxis(half.points, 1, 0)
     assert np.isclose(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2, 1.7 * 4)
@@ -109,7 +110,7 @@ def test_the_mesh_before_stands_where_it_stood() -> None:
     assert strokes.label == "before" and len(ends)
     assert (ends.min(axis=0) >= corners.min(axis=0) - 1e-9).all()
     assert (ends.max(axis=0) <= corners.max(axis=0) + 1e-9).all()
-    screen = Screen.of(camera, [displaced(mesh, mesh.boundary, None, 1)])
+    screen = Screen.of(camera, [displaced(mesh, mesh.boundary, None)])
     seen = wireframe(shot.subject, screen).segments
     length = np.linalg.norm(np.diff(seen, axis=1), axis=2).sum() / camera.scale
     assert length < 2 * (20 + 6) + 6 + 2 * np.hypot(10, 6) + 2 * (20 + 20)  # the back is hidden
@@ -126,7 +127,7 @@ def test_the_control_net_is_drawn_at_the_controls_and_not_on_the_surface() -> No
     assert np.abs(strokes.dots - control).max(axis=1).min() < 1e-9
     value = camera.pixels(np.array([5.0, 0.0, 6.0 + 25 / 40]))
     assert np.abs(strokes.dots - value).max(axis=1).min() > 1
-    screen = Screen.of(camera, [displaced(mesh, mesh.boundary, shot.displacement, 4)])
+    screen = Screen.of(camera, [displaced(mesh, mesh.boundary, shot.displacement, 0.01)])
     assert len(control_net(shot.subject, screen).dots) < ControlNet(mesh, 2).count  # type: ignore[arg-type]
 
 
@@ -195,6 +196,58 @@ def test_a_film_has_its_frames_and_they_differ() -> None:
         assert shown.info["duration"] == 200
     differ = [np.abs(a - b).mean() for k, a in enumerate(frames) for b in frames[:k]]
     assert min(differ) > 0.2
+
+
+def decoded(content: bytes) -> tuple[list[np.ndarray], float]:
+    """The frames of an MP4 and how long it lasts, s."""
+    av = pytest.importorskip("av", reason="PyAV is not installed: the extra film")
+    with av.open(io.BytesIO(content)) as file:
+        frames = [frame.to_ndarray(format="rgb24") for frame in file.decode(video=0)]
+        return frames, float(file.streams.video[0].duration * file.streams.video[0].time_base)
+
+
+def test_an_mp4_shows_the_frames_it_was_given() -> None:
+    pytest.importorskip("av", reason="PyAV is not installed: the extra film")
+    across, down = np.meshgrid(np.linspace(0, 1, 81), np.linspace(0, 1, 60))
+    frames = [
+        np.rint(255 * np.stack([across, down, 0 * across + k / 9], axis=2)).astype(np.uint8)
+        for k in range(10)
+    ]
+    shown, lasts = decoded(movie.mp4(frames, 0.125))
+    assert len(shown) == 10 and abs(lasts - 1.25) < 1e-6
+    assert shown[0].shape == (60, 82, 3)
+    for frame, given in zip(shown, frames, strict=True):
+        assert np.abs(frame[:, :81].astype(float) - given).mean() < 3
+        assert np.abs(frame[:, 81].astype(float) - given[:, 80]).mean() < 6
+
+
+def test_a_film_is_an_mp4_where_its_name_says_so(tmp_path: Path) -> None:
+    pytest.importorskip("av", reason="PyAV is not installed: the extra film")
+    mesh = bar()
+    shot, how = Shot(mesh, displacement=bent(mesh)), {"frames": 4, "seconds": 1.0}
+    content = film(tmp_path / "a.mp4", shot, size=(241, 253), **how)  # type: ignore[arg-type]
+    assert (tmp_path / "a.mp4").read_bytes() == content
+    shown, lasts = decoded(content)
+    assert len(shown) == 4 and abs(lasts - 1.0) < 1e-6 and shown[0].shape == (254, 242, 3)
+    still = Image.open(io.BytesIO(film(None, shot, size=(241, 253), **how)))  # type: ignore[arg-type]
+    still.seek(2)
+    same = np.asarray(still.convert("RGB"), float)
+    assert (
+        np.abs(shown[2][:253, :241] - same).mean() < 4 < np.abs(shown[1][:253, :241] - same).max()
+    )
+    with pytest.raises(InputError, match=r"hold a GIF or MP4; end it in \.gif or \.mp4"):
+        film(tmp_path / "a.avi", shot)
+
+
+def test_without_the_extra_an_mp4_says_what_to_install_before_any_work(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setitem(sys.modules, "av", None)
+    drawn: list[int] = []
+    shot = Shot(bar(), displacement=bent(bar()))
+    with pytest.raises(MissingExtra, match=r"bezsoma\[film\]"):
+        film(tmp_path / "a.mp4", shot, progress=lambda *_: drawn.append(1))
+    assert not drawn and not list(tmp_path.iterdir())
 
 
 def test_the_viewer_walks_around_at_one_scale_and_up_stays_up() -> None:

@@ -231,9 +231,9 @@ def test_tolerances_that_are_none_are_refused(tolerance: float, scale: float) ->
 
 def test_a_tolerance_too_fine_says_what_can_be_had() -> None:
     surface = uneven(3).on_surface()
-    with pytest.raises(InputError, match=r"would cut edges in \d+ parts, and 64 is the most") as e:
+    with pytest.raises(InputError, match=r"would cut edges in \d+ parts, and 256 is the most") as e:
         tessellation(surface, 1e-7)
-    assert STEPS[-1] == 64 and "subdivide the field first" in str(e.value)
+    assert STEPS[-1] == 256 and "subdivide the field first" in str(e.value)
     field = uneven(3)
     finer = field.subdivided(subdivision(field.mesh)).on_surface()
     fine, coarse = tessellation(finer, 0.02), tessellation(surface, 0.02)

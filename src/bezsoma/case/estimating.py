@@ -4,22 +4,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from math import sqrt
 from time import perf_counter
 from typing import Any
-
-import numpy as np
 
 from bezsoma.arrays import Floats
 from bezsoma.case.reading import Case
 from bezsoma.errors import BezSomaError
 from bezsoma.mechanics.body import HIGHEST_DEGREE
 from bezsoma.mesh.control_net import ControlNet
-from bezsoma.refinement.estimates import energy_estimate, goal_estimate
+from bezsoma.refinement.estimates import (
+    GoalEstimate,
+    VectorEstimate,
+    energy_estimate,
+    goal_estimate,
+    vector_estimate,
+)
 from bezsoma.refinement.goals import Goal
-from bezsoma.refinement.means import mean
 from bezsoma.refinement.raised import UP, Raised, raised
-from bezsoma.refinement.targets import around
+from bezsoma.refinement.targets import AXES, around
 from bezsoma.solvers.solution import Solution
 
 MOST_UNKNOWNS = 1_000_000
@@ -33,9 +36,9 @@ def estimated(
 ) -> dict[str, Any]:
     """What summary.json says of the error; `left_out` says why where there is no estimate.
 
-    `energy` [-] is relative, in the energy norm; `probes` has for each the mean over a patch, its
-    direction and its error, mm; `components` is None where these directions are those of the
-    motion; `seconds` is what all of it took.
+    `energy` [-] is relative, in the energy norm; `probes` has for each the mean over a patch and
+    its error, mm: those `components` of it, and the length of all errors together; `seconds` is
+    what all of it took.
     """
     table, start = case.file.error, perf_counter()
     if reason := _unwanted(table.estimate, solution):
@@ -45,15 +48,15 @@ def estimated(
         richer = raised(solution, threads=case.file.solver.threads)
         energy = energy_estimate(solution, richer=richer)
         found = {
-            name: [_judged(solution, goal, richer) for goal in goals]
-            for name, goals in _goals(case, solution, probes)
+            name: _told(goals, table.components, solution, richer)
+            for name, goals in _goals(case, probes)
         }
     except BezSomaError as error:
         return {"left_out": f"the error could not be estimated: {error}"}
     return {
         "energy": energy.relative,
         "probes": found,
-        "components": case.file.error.components,
+        "components": table.components or AXES,
         "unknowns": len(richer.start),
         "seconds": perf_counter() - start,
     }
@@ -75,26 +78,30 @@ def _unwanted(estimate: bool | None, solution: Solution) -> str:
     return ""
 
 
-def _goals(
-    case: Case, solution: Solution, probes: Mapping[str, Floats]
-) -> Iterator[tuple[str, list[Goal]]]:
-    """The means around each probe: of its surface where it has one, else of the inside."""
-    table, surfaces = case.file.error, {each.name: each.on for each in case.file.probe}
+def _goals(case: Case, probes: Mapping[str, Floats]) -> Iterator[tuple[str, tuple[Goal, ...]]]:
+    """The means around each probe, x, y and z: of its surface where it has one, else inside."""
+    radius, surfaces = case.file.error.radius, {each.name: each.on for each in case.file.probe}
     for name, point in probes.items():
-        goals = around(name, point, table.radius, surfaces[name]).goals
-        moved = np.array([mean(goal, solution.displacement) for goal in goals])
-        if table.components is not None:
-            yield name, [goals["xyz".index(letter)] for letter in table.components]
-        else:
-            yield name, [replace(goals[0], direction=moved)] if moved.any() else [goals[2]]
+        yield name, around(name, point, radius, surfaces[name]).goals
 
 
-def _judged(solution: Solution, goal: Goal, richer: Raised) -> dict[str, Any]:
-    found = goal_estimate(solution, goal, richer=richer)
-    return {
-        "direction": goal.direction.tolist(),
-        "radius": getattr(goal, "radius", None),
-        "mean": found.value,
-        "error": found.size,
-        "signed": found.error,
-    }
+def _told(
+    goals: tuple[Goal, ...], components: str | None, solution: Solution, richer: Raised
+) -> dict[str, Any]:
+    """The mean over a patch and its error, mm: all components, or those asked for."""
+    radius = getattr(goals[0], "radius", None)
+    if components is None:
+        return {"radius": radius, **_vector(vector_estimate(solution, goals[0], richer=richer))}
+    chosen = [goals[AXES.index(letter)] for letter in components]
+    found = [goal_estimate(solution, goal, richer=richer) for goal in chosen]
+    return {"radius": radius, **_components(found)}
+
+
+def _vector(found: VectorEstimate) -> dict[str, Any]:
+    return {"mean": found.value.tolist(), "signed": found.error.tolist(), "error": found.size}
+
+
+def _components(found: list[GoalEstimate]) -> dict[str, Any]:
+    size = sqrt(sum(each.size**2 for each in found))
+    mean, signed = [each.value for each in found], [each.error for each in found]
+    return {"mean": mean, "signed": signed, "error": size}

@@ -33,12 +33,21 @@ def readme(summary: Mapping[str, Any]) -> str:
         "\n".join(f"Beware: {warning}." for warning in summary["warnings"]),
         _files(summary["files"]),
         "Run it again, or a changed copy (files that a case names are looked for beside it):\n\n"
-        "    bezsoma run case.toml -o another-folder",
+        f"    bezsoma run case.toml{_instead(summary)} -o another-folder",
         "Read it again in Python:\n\n    import bezsoma as bz\n"
         '    results = bz.read_results("this folder")\n'
         "    results.displacement.at(points)   # mm, at any points (p, 3) of the mesh",
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def _instead(summary: Mapping[str, Any]) -> str:
+    """What was asked for beside the case, as options.
+
+    >>> _instead({"instead": {"degree": 3, "tolerance": 0.05}})
+    ' --degree 3 --tolerance 0.05'
+    """
+    return "".join(f" --{name} {value!r}" for name, value in summary["instead"].items())
 
 
 def motion_table(probes: Mapping[str, Mapping[str, Any]]) -> str:
@@ -70,8 +79,7 @@ def error_told(summary: Mapping[str, Any]) -> str:
     >>> print(error_told({"error": {"energy": 0.034, "probes": {}, "unknowns": 5, "seconds": 2.0}}))
     Estimated error: 3.4 % in the energy norm (2.0 s).
 
-    Across the way that a probe moved the error may be many times that along it: so it is said
-    which of them the table has.
+    It is that of the components named, of several the length of their errors.
     """
     error = summary.get("error")
     if error is None:
@@ -79,20 +87,18 @@ def error_told(summary: Mapping[str, Any]) -> str:
     if "left_out" in error:
         return f"Error: not estimated; {error['left_out']}."
     told = f"Estimated error: {100 * error['energy']:.3g} % in the energy norm"
-    radii = {found[0]["radius"] for found in error["probes"].values()}
+    radii = {found["radius"] for found in error["probes"].values()}
     if radii:
         told += (
             f"; in the table, mm, that of the mean displacement within {min(radii):g} mm of each "
-            f"probe, {_along(error['components'])}"
+            f"probe, of {_together(error['components'])}"
         )
     return f"{told} ({error['seconds']:.1f} s)."
 
 
-def _along(components: str | None) -> str:
+def _together(components: str) -> str:
     """Of what in a displacement the error is."""
-    if components is None:
-        return "along the way that it moved; components in [error] asks for others"
-    return f"of {components} together" if len(components) > 1 else f"of {components}"
+    return f"{components} together" if len(components) > 1 else components
 
 
 def levels_table(summary: Mapping[str, Any]) -> str:

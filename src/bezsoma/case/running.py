@@ -85,6 +85,10 @@ def run_case(
     if levels is not None:
         place.check_room(_size(solution.body))
     summary = summary_of(case, solution, probes, levels)
+    summary["instead"] = {
+        **({} if degree in (None, case.file.degree) else {"degree": degree}),
+        **({} if tolerance is None else {"tolerance": float(tolerance)}),
+    }
     if levels is None:
         with_error(summary, estimated(case, solution, probes, progress))
     else:
@@ -145,11 +149,10 @@ def _said(
 
 
 def with_error(summary: dict[str, Any], error: dict[str, Any]) -> None:
-    """Put what is known of the error beside the values: of each probe that of its goals, mm."""
+    """Put what is known of the error beside the values: of each probe its length, mm."""
     summary["error"] = error
     for name, found in error.get("probes", {}).items():
-        size = float(np.linalg.norm([each["error"] for each in found]))
-        summary["probes"][name].update(error=size, error_radius=found[0]["radius"])
+        summary["probes"][name].update(error=found["error"], error_radius=found["radius"])
 
 
 def with_last_level(summary: dict[str, Any], last: Level, radius: float) -> None:

@@ -352,7 +352,7 @@ class Error(Table):
     radius: Positive = 3.0
     """Of the patch around a probe over which the displacement is averaged, mm; [refine] too."""
     components: Components | None = None
-    """Of the displacement of a probe; where not given, along the way that it moved."""
+    """Of the displacement of a probe; where not given, all three."""
 
 
 class Probe(Table):

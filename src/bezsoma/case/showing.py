@@ -13,7 +13,7 @@ from bezsoma.errors import InputError, unknown
 from bezsoma.mesh.planes import Plane
 from bezsoma.results import Results, read_results
 from bezsoma.view.camera import axes
-from bezsoma.view.film import film
+from bezsoma.view.film import ENDINGS, film
 from bezsoma.view.picture import page
 from bezsoma.view.shot import Shot
 from bezsoma.view.written import vacant, written
@@ -73,12 +73,12 @@ def results_film(
     progress: Callable[[int, int], None] | None = None,
     **how: object,
 ) -> bytes:
-    """A film of the movement in a results folder as animated GIF; written if a path is given.
+    """A film of the movement in a results folder, GIF or MP4; written if a path is given.
 
     See `film`; `field` is one of `FIELDS`, or None for a plain surface.
     """
     if path is not None:
-        vacant(path, overwrite, ".gif")
+        vacant(path, overwrite, *ENDINGS)
     read = _read(results)
     return film(
         path,

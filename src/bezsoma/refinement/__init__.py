@@ -6,8 +6,10 @@ from __future__ import annotations
 from bezsoma.refinement.estimates import (
     EnergyEstimate,
     GoalEstimate,
+    VectorEstimate,
     energy_estimate,
     goal_estimate,
+    vector_estimate,
 )
 from bezsoma.refinement.goals import Goal, InnerMean, PatchMean, SurfaceMean
 
@@ -18,6 +20,8 @@ __all__ = [
     "InnerMean",
     "PatchMean",
     "SurfaceMean",
+    "VectorEstimate",
     "energy_estimate",
     "goal_estimate",
+    "vector_estimate",
 ]

@@ -16,7 +16,7 @@ import numpy as np
 from bezsoma.arrays import Floats, Ints, frozen
 from bezsoma.view.lattice import ROUND, SIDES, along, lattice_points, small_triangles
 
-STEPS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64)
+STEPS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 96, 128, 192, 256)
 """The numbers of parts that are used: few, so that many facets share a pattern."""
 LEAST_INSIDE = 3
 """Parts of the smallest lattice with a point inside."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A short film of a movement, as an animated GIF: to and fro, while the viewer walks around."""
+"""A short film of a movement, as GIF or MP4: to and fro, while the viewer walks around."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ import numpy as np
 from bezsoma.errors import InputError
 from bezsoma.view.camera import Camera, around, axes, turned
 from bezsoma.view.layout import Layout
+from bezsoma.view.movie import encoder, mp4
 from bezsoma.view.picture import page_size, place_given
 from bezsoma.view.sheet import Bar, Bytes, gif, pixels, sheet
 from bezsoma.view.shot import Shot, bar_of, panel
 from bezsoma.view.written import written
 
+ENDINGS = (".gif", ".mp4")
 MOST_FRAMES = 240
 _SWINGS = 2
 """So often the movement is shown while the viewer walks once around."""
@@ -35,7 +37,10 @@ def film(
     overwrite: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> bytes:
-    """The movement of a shot as an animated GIF without end; written if a path is given.
+    """The movement of a shot as the bytes of a film; written if a path is given.
+
+    A path that ends in .mp4 asks for an MP4 (H.264), which needs the extra `film`; any other is an
+    animated GIF without end, of 256 colours.
 
     The displacement grows from nothing to what the shot says and back, twice, while the viewer
     walks once around from `view`; with a `turn` of less than 360 degrees to and fro by so much,
@@ -50,7 +55,11 @@ def film(
     """
     shot = shot.checked("film(path, shot)")
     _check(shot, turn, frames, seconds)
-    place_given(path, overwrite, "film(path, shot)", ".gif")
+    place_given(path, overwrite, "film(path, shot)", *ENDINGS)
+    encoded = gif
+    if path is not None and str(path).lower().endswith(".mp4"):
+        encoder()  # its absence is told before any work
+        encoded = mp4
     layout = Layout(page_size(size), 1, 1, bool(title), shot.colour is not None)
     cameras = around(
         [turned(axes(view), angle) for angle in angles(turn, frames)],
@@ -65,7 +74,7 @@ def film(
         if progress is not None:
             progress(number, frames)
         shown.append(_frame(shot, share, camera, layout, title, scale))
-    content = gif(shown, seconds / frames)
+    content = encoded(shown, seconds / frames)
     if path is not None:
         written(path, content, overwrite)
     return content

@@ -24,17 +24,22 @@ def edge_parts(bent: Bends, tolerance: float) -> Ints:
     return np.asarray(np.array(STEPS)[np.searchsorted(STEPS, wanted)])
 
 
-def insides(bent: Bends, parts: Ints, tolerance: float) -> tuple[Ints, Bools]:
+def insides(
+    bent: Bends, parts: Ints, tolerance: float, least: Ints | int = 1
+) -> tuple[Ints, Bools]:
     """The lattice inside each facet (f,), the coarsest for which all its triangles are near.
 
-    And which of its corners are nipped (f, 3): those where that is near enough. 0 where none is:
-    an edge that is straight, beside an inside that is bent a great deal.
+    It has at least so many parts (f,). And which of its corners are nipped (f, 3): those where that
+    is near enough. 0 where none is: an edge that is straight, beside an inside that is bent a great
+    deal.
     """
     whole = lattice_error(bent)
     even = (parts == parts[:, :1]).all(axis=1) & (whole <= tolerance * parts[:, 0] ** 2)
+    even &= least <= parts[:, 0]
     inside, nipped = np.where(even, parts[:, 0], 0), np.zeros(parts.shape, np.bool_)
     for step in (step for step in STEPS if step >= LEAST_INSIDE):
-        left = np.flatnonzero((inside == 0) & (whole <= tolerance * step**2))
+        fine = (least <= step) & (whole <= tolerance * step**2)
+        left = np.flatnonzero((inside == 0) & fine)
         corners, near = _near(bent.of(left), parts[left], step, tolerance)
         inside[left[near]], nipped[left[near]] = step, corners[near]
     return inside, nipped

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import ceil, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -13,13 +12,13 @@ from bezsoma.arrays import Floats, Ints
 from bezsoma.errors import InputError
 from bezsoma.mesh import Field, TetMesh
 from bezsoma.mesh.nouns import field_given, mesh_given
-from bezsoma.view.camera import fitted
+from bezsoma.view.camera import Camera, fitted
 from bezsoma.view.layout import Layout, sheet_size
 from bezsoma.view.light import REST, SKIN
-from bezsoma.view.restriction import controls_on, values_at
+from bezsoma.view.numbers import numbers_on
 from bezsoma.view.shading import Layer, shaded
 from bezsoma.view.sheet import Bar, Panel, colours, png, round_levels, sheet
-from bezsoma.view.subject import CREASE, SKIN_CREASE
+from bezsoma.view.subject import CREASE, NEAR, SIDE, SKIN_CREASE
 from bezsoma.view.surfaces import Surface, displaced
 from bezsoma.view.written import written
 
@@ -32,8 +31,6 @@ FREE = ("skin", "cut")
 """What hides the rest and is left away where bones are shown."""
 PALE = (0.86, 0.80, 0.77)
 """The head around the predicted part."""
-SAMPLES = 40_000
-"""Triangles that a surface is cut into at least, for its shade to be smooth."""
 
 
 def mesh_picture(
@@ -53,10 +50,10 @@ def mesh_picture(
         facets = np.concatenate([mesh.surfaces[name] for name in names] or [mesh.boundary])
         camera = fitted(view, mesh.points[np.unique(facets)], layout.panel)
         layers = [
-            _layer(mesh, mesh.surfaces[name], COLOURS.get(name, REST), wires, name)
+            _layer(mesh, camera, mesh.surfaces[name], COLOURS.get(name, REST), wires, name)
             for name in names
         ]
-        layers = layers or [_layer(mesh, mesh.boundary, REST, wires, "")]
+        layers = layers or [_layer(mesh, camera, mesh.boundary, REST, wires, "")]
         caption = f"{view}: {', '.join(names) or 'boundary'}"
         panels.append(Panel(shaded(camera, layers).colours, camera, caption))
     return _finished(path, panels, layout, title, overwrite)
@@ -87,15 +84,16 @@ def head_picture(
     points = np.concatenate([around.points[np.unique(around.surfaces["head"])],
                              mesh.points[np.unique(skin)]])  # fmt: skip
     layout = Layout(sheet_size(1800, 3, 2, 1.05, bool(title)), 3, 2, bool(title), bars=True)
-    rest = _layer(around, around.surfaces["head"], PALE, False, "skin")
-    before = _layer(mesh, skin, SKIN, False, "skin")
-    moved = _surface(mesh, skin, "skin", displacement)
+    cameras = [fitted(view, points, layout.panel) for view in views]
+    nearest = max(cameras, key=lambda camera: camera.scale)
+    rest = _layer(around, nearest, around.surfaces["head"], PALE, False, "skin")
+    before = _layer(mesh, nearest, skin, SKIN, False, "skin")
+    moved = _surface(mesh, nearest, skin, "skin", displacement)
     after = Layer(moved, SKIN, translucent=True)
     lengths, bar = _lengths(mesh, displacement, moved)
     painted = Layer(moved, values=lengths, limits=bar.limits, table=bar.table, levels=bar.levels)
     panels = []
-    for view in views:
-        camera = fitted(view, points, layout.panel)
+    for view, camera in zip(views, cameras, strict=True):
         for layer, caption in ((before, "before"), (after, "after"), (painted, "how far it moved")):
             picture = shaded(camera, [layer, rest]).colours
             scale = bar if layer is painted and view == views[-1] else None
@@ -105,25 +103,28 @@ def head_picture(
 
 def _layer(
     mesh: TetMesh,
+    camera: Camera,
     facets: Ints,
     colour: tuple[float, float, float],
     wires: bool,
     name: str,
 ) -> Layer:
-    surface = _surface(mesh, facets, name, None)
+    surface = _surface(mesh, camera, facets, name, None)
     return Layer(surface, colour, translucent=name == "skin", wires=wires)
 
 
-def _surface(mesh: TetMesh, facets: Ints, name: str, displacement: Field | None) -> Surface:
-    parts = min(4, max(1, ceil(sqrt(SAMPLES / len(facets)))))
-    return displaced(mesh, facets, displacement, parts, SKIN_CREASE if name == "skin" else CREASE)
+def _surface(
+    mesh: TetMesh, camera: Camera, facets: Ints, name: str, displacement: Field | None
+) -> Surface:
+    """A surface cut as finely as a camera asks for."""
+    crease = SKIN_CREASE if name == "skin" else CREASE
+    near, side = NEAR / camera.scale, SIDE / camera.scale
+    return displaced(mesh, facets, displacement, near, crease, longest=side)
 
 
 def _lengths(mesh: TetMesh, displacement: Field, surface: Surface) -> tuple[Floats, Bar]:
-    """How far each sample (f, m) of the skin moved in mm, and the bar that says so."""
-    controls = controls_on(mesh, displacement, surface.facets)
-    values = values_at(displacement.degree, controls, surface.bary)
-    lengths = np.linalg.norm(values, axis=2)
+    """How far each sample (s,) of the skin moved in mm, and the bar that says so."""
+    lengths = numbers_on(mesh, displacement, surface, None)
     top = float(lengths.max())
     return lengths, Bar("mm", (0.0, top), colours("magma_r"), round_levels(0.0, max(top, 1e-9)))
 

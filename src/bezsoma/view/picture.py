@@ -202,10 +202,10 @@ def face_picture(
     return content
 
 
-def place_given(path: Any, overwrite: bool, call: str, ending: str = ".png") -> None:
+def place_given(path: Any, overwrite: bool, call: str, *endings: str) -> None:
     """Refuses, before any work, what is no path or a place that is taken; None is fine."""
     if path is not None:
-        vacant(path_given(path, call), overwrite, ending)
+        vacant(path_given(path, call), overwrite, *(endings or (".png",)))
 
 
 def _profile(

@@ -10,24 +10,24 @@ import numpy as np
 import numpy.typing as npt
 
 from bezsoma.arrays import Bools, Floats, Ints, T
-from bezsoma.view.lattice import corners_of
+from bezsoma.view.lattice import corners_of, lattice_points, small_triangles
 from bezsoma.view.surfaces import on_edges
 
 
 class Drawn(Protocol):
-    """Patches of m samples each, and how small triangles stand between the samples."""
+    """Samples, in rows of any kind (..), and how small triangles stand between them."""
 
     @property
     def points(self) -> Floats:
-        """(f, m, 3) mm."""
+        """(.., 3) mm."""
 
     @property
     def normals(self) -> Floats:
-        """(f, m, 3) outward, length 1."""
+        """(.., 3) outward, length 1."""
 
     @property
     def vertex(self) -> Ints:
-        """(f, m) one number for samples that share point and normal."""
+        """(..) one number for samples that share point and normal."""
 
     @property
     def rims(self) -> Bools:
@@ -58,7 +58,7 @@ def apart(surface: Drawn) -> Pieces:
 
 
 def clipped(surface: Drawn, heights: Floats) -> Pieces:
-    """The part of a surface with heights (f, m) below zero.
+    """The part of a surface whose samples have heights (..) below zero.
 
     The triangles that a picture shows are cut, with straight cuts; where they were fine enough
     for the picture, so are these.
@@ -129,5 +129,6 @@ def refined(points: Floats, normals: Floats, rims: Bools, parts: int) -> Pieces:
     """Triangles from patches of samples (f, m, 3); edge j of a patch is drawn where rims (f, 3)."""
     vertex = np.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
     points, normals, vertex = (corners_of(each, parts) for each in (points, normals, vertex))
-    mine = np.einsum("tkj,fj->ftk", on_edges(parts), rims).reshape(-1, 3)
+    on = on_edges(lattice_points(parts) / parts, small_triangles(parts))
+    mine = np.einsum("tkj,fj->ftk", on, rims).reshape(-1, 3)
     return Pieces(points, normals, vertex, mine)

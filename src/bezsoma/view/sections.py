@@ -64,9 +64,7 @@ class Section:
 
     def behind(self, surface: Surface) -> Pieces:
         """What stays of a surface that is drawn."""
-        places = surface.points
-        if self.carried:
-            places = surface.bary @ self.mesh.points[surface.facets]
+        places = surface.places if self.carried else surface.points
         return clipped(surface, self.plane.heights(places))
 
     def kept(self) -> Bools:

@@ -21,7 +21,7 @@ _GRAIN = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """A surface and its paint: one colour, or values (f, m) looked up in a table of colours."""
+    """A surface and its paint: one colour, or values (..) at its samples, by a table of colours."""
 
     surface: Drawn
     colour: tuple[float, float, float] = SKIN
@@ -121,7 +121,7 @@ class _Model:
             seen = camera.seen(surface.corners(surface.points)).astype(np.float32)
             corners.append(seen)
             normals.append((surface.corners(surface.normals) @ camera.axes.T).astype(np.float32))
-            painted = np.zeros(surface.points.shape[:2]) if layer.values is None else layer.values
+            painted = np.zeros(surface.points.shape[:-1]) if layer.values is None else layer.values
             values.append(surface.corners(painted).astype(np.float32))
             wires.append(_heights(seen, camera.scale, surface.rims & layer.wires))
         joined = np.concatenate(corners)

@@ -34,7 +34,7 @@ _VEIL = 0.38
 
 
 class Part(NamedTuple):
-    """A surface of a picture, and its numbers (f, m) where it is coloured by a field."""
+    """A surface of a picture, and its numbers (..) where it is coloured by a field."""
 
     surface: Drawn
     numbers: Floats | None
@@ -157,7 +157,7 @@ class Shot:
         strokes = []
         if self.before:
             facets = np.concatenate([self.subject.facets, self.subject.rest])
-            old: Drawn = displaced(self.mesh, facets, None, 1)
+            old: Drawn = displaced(self.mesh, facets, None)
             if section is not None:
                 old = clipped(old, section.plane.heights(old.points))
             kept = None if section is None else section.kept()

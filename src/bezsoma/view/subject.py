@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import ceil, sqrt
 
 import numpy as np
 
@@ -13,17 +12,15 @@ from bezsoma.bernstein import domain_points
 from bezsoma.errors import InputError
 from bezsoma.mesh import Field, TetMesh
 from bezsoma.view.restriction import controls_on, degree_of, facets_named, on_same_mesh
-from bezsoma.view.surfaces import MOST_PARTS, Surface, displaced, parts_for
+from bezsoma.view.surfaces import Surface, displaced
 
 Named = str | tuple[str, ...] | None
-_TRIANGLES = 60_000
-"""So many are cut, or one for every few pixels if that is less, for the shade to be smooth."""
-_PIXELS = 12
-"""Pixels for such a triangle."""
-_MOST_TRIANGLES = 200_000
-"""All facets are cut alike, and more for the sake of a few of them would cost seconds."""
-_QUARTER = 0.25
-"""By how much of a pixel the triangles may stray from the polynomial."""
+NEAR = 0.25
+"""How far triangles may be from the polynomial surface, in pixels."""
+SIDE = 6.0
+"""How long their sides are at most, for shades and colours to be smooth between corners, in pixels.
+
+As it was before the move; a magnified one stretches them."""
 CREASE, SKIN_CREASE = 0.7, 2.0
 """Where facets meet at a larger angle in rad, an edge is seen; skin has none but the sharpest."""
 
@@ -83,20 +80,6 @@ class Subject:
         after = domain_points(degree, 2) @ corners + controls
         return np.concatenate([corners.reshape(-1, 3), after.reshape(-1, 3)])
 
-    def parts(self, scale: float) -> int:
-        """Into how many parts to cut the edges of facets at `scale` pixels per mm."""
-        number = len(self.facets) + len(self.rest) + len(self.veil)
-        across = np.sort(np.ptp(self.mesh.points, axis=0))[1:] * scale
-        wanted = ceil(sqrt(min(_TRIANGLES, across.prod() / _PIXELS) / number))
-        most = min(MOST_PARTS, int(sqrt(_MOST_TRIANGLES / number)))
-        if self.displacement is not None:
-            degree = degree_of(self.displacement)
-            controls = controls_on(self.mesh, self.displacement, self.facets)
-            wanted = max(
-                wanted, parts_for(self.magnified * controls, degree, _QUARTER / scale), degree
-            )
-        return max(1, min(most, wanted))
-
     def surfaces(self, scale: float, moved: bool) -> tuple[Surface, Surface | None]:
         """The surface that matters and the rest, before or after the displacement."""
         front, back, _ = self.every_surface(scale, moved)
@@ -106,10 +89,10 @@ class Subject:
         self, scale: float, moved: bool
     ) -> tuple[Surface, Surface | None, Surface | None]:
         """The surface that matters, the rest, and what is seen through, before or after."""
-        parts = self.parts(scale)
         field = self.displacement if moved else None
+        near, side = NEAR / scale, SIDE / scale
         first, second, third = (
-            displaced(self.mesh, facets, field, parts, crease, self.magnified)
+            displaced(self.mesh, facets, field, near, crease, self.magnified, side)
             if len(facets)
             else None
             for facets, crease in (

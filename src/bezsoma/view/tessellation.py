@@ -114,7 +114,10 @@ class Tessellation:
 
 
 def tessellation(
-    surface: SurfaceField, tolerance: float = 0.05, scale: float = 1.0
+    surface: SurfaceField,
+    tolerance: float = 0.05,
+    scale: float = 1.0,
+    longest: float = np.inf,
 ) -> Tessellation:
     """The surface moved by its displacement, as triangles no farther than `tolerance` mm from it.
 
@@ -135,20 +138,26 @@ def tessellation(
         surface: a displacement on facets, such as `solution.displacement.on_surface("skin")`.
         tolerance: mm.
         scale: how many times the displacement is applied.
+        longest: how long, in mm, the sides of triangles may be before they move, as far as the
+            most parts of an edge allow it: for what is linear between corners, a shade or a colour.
     """
     if not (tolerance > 0 and np.isfinite(tolerance) and np.isfinite(scale)):
         raise InputError(
             f"a tolerance of {tolerance} mm and a scale of {scale} were given; the first has to "
             "be positive, and both finite"
         )
+    if not longest > 0:
+        raise InputError(f"triangles cannot have sides of at most {longest} mm; give more than 0")
     if not np.isfinite(surface.displacement).all():
         raise InputError("the displacement holds NaN or infinite controls; it has no surface")
     bent = bends(scale * surface.displacement, surface.degree)
-    rims = _Rims.of(surface.facets, edge_parts(bent, tolerance))
-    inside, nipped = insides(bent, rims.of_facet, tolerance)
+    least = _parts_of_length(surface.corners, longest)
+    rims = _Rims.of(surface.facets, np.maximum(edge_parts(bent, tolerance), least))
+    within = least.max(axis=1, initial=1)
+    inside, nipped = insides(bent, rims.of_facet, tolerance, within)
     while (inside == 0).any():
         rims = rims.with_more(np.flatnonzero(inside == 0), tolerance)
-        inside, nipped = insides(bent, rims.of_facet, tolerance)
+        inside, nipped = insides(bent, rims.of_facet, tolerance, within)
     groups, count = _groups(rims, inside, nipped)
     points = np.empty((count, 3))
     _fill_rims(points, surface, scale, rims)
@@ -167,6 +176,13 @@ def tessellation(
         ]
     )
     return Tessellation(surface, scale, tolerance, frozen(points), frozen(triangles), groups)
+
+
+def _parts_of_length(corners: Floats, longest: float) -> Ints:
+    """Into how many parts (f, 3) edges are cut for none to be longer; as many as there may be."""
+    ends = corners[:, np.array(SIDES)]
+    wanted = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2) / longest
+    return np.array(STEPS)[np.searchsorted(STEPS[:-1], wanted * (1 - 1e-12))]
 
 
 @dataclass(frozen=True, eq=False)

@@ -165,7 +165,7 @@ def _fill(plotter: Any, pyvista: Any, shot: Shot, camera: Camera) -> None:
         if numbers is not None and bar is not None:
             mesh.point_data["shown"] = numbers
             look = {"scalars": "shown", "clim": bar.limits, "cmap": hexadecimal(bar.table)}
-            look["scalar_bar_args"] = {"title": bar.label}
+            look["scalar_bar_args"] = {"title": f"{bar.label}\n"}  # or it would touch the numbers
         plotter.add_mesh(mesh, opacity=opacity, smooth_shading=True, **look)
     plotter.add_axes(xlabel="L", ylabel="P", zlabel="S", line_width=4)
     plotter.add_text(NOTICE, position="lower_right", font_size=7)

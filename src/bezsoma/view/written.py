@@ -28,16 +28,17 @@ def written(path: str | Path, content: bytes, overwrite: bool = False) -> Path:
     return target
 
 
-def vacant(path: str | Path, overwrite: bool = False, ending: str = "") -> Path:
+def vacant(path: str | Path, overwrite: bool = False, *endings: str) -> Path:
     """The path, if a file may be written there: asked before the work as well as after it.
 
-    `ending` is what its name has to end in, so that it says what the file holds.
+    `endings` are what its name may end in, so that it says what the file holds.
     """
     target = Path(path)
     if target.is_dir():
         raise InputError(f"{str(target)!r} is a folder; give the name of a file in it")
-    if not target.name.lower().endswith(ending):
-        raise InputError(f"{str(target)!r} would hold a {ending[1:].upper()}; end it in {ending}")
+    if endings and not target.name.lower().endswith(endings):
+        kinds = " or ".join(each[1:].upper() for each in endings)
+        raise InputError(f"{str(target)!r} would hold a {kinds}; end it in {' or '.join(endings)}")
     if target.exists() and not overwrite:
         raise InputError(f"{str(target)!r} exists; say overwrite=True to replace it")
     if not target.parent.is_dir():
