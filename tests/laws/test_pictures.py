@@ -120,7 +120,7 @@ def test_sides_are_marked_in_every_view(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_the_silhouette_of_a_sphere_is_within_half_a_pixel() -> None:
     mesh, rounding = sphere(5)
-    surface = displaced(mesh, mesh.boundary, rounding, 0.25 / 6)
+    surface = Subject.of(mesh, None, True, rounding, 1.0).surfaces(6.0, moved=True)[0]
     for view in ("front", "three-quarter"):
         camera = Camera(axes(view), np.array([0.3, 0.1, -0.2]), 6.0, (400, 380))
         shown = coverage(camera, surface)

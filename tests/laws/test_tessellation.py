@@ -74,6 +74,27 @@ def test_a_magnified_displacement_needs_more_triangles() -> None:
     assert len(tessellation(surface, 0.05, 0.0).triangles) == len(surface.facets)
 
 
+def test_sides_are_no_longer_than_asked_for() -> None:
+    surface = uneven(3).on_surface()
+    for tolerance, longest in ((1e3, 0.7), (0.1, 1.0)):
+        found = tessellation(surface, tolerance, longest=longest)
+        for group in found.groups:
+            corners = surface.corners[group.facets]
+            for i, j in ((0, 1), (0, 2), (1, 2)):
+                side = np.linalg.norm(corners[:, j] - corners[:, i], axis=1)
+                on = group.cut.bary[:, 3 - i - j] == 0
+                assert side.max() / (on.sum() - 1) <= longest * (1 + 1e-12)
+                places = group.cut.bary @ corners
+                inner = places[:, group.cut.triangles]
+                ends = inner[:, :, [1, 2, 0]] - inner
+                assert np.linalg.norm(ends, axis=3).max() < 2 * longest
+        assert strays(found).max() <= tolerance
+    one = tessellation(uneven(1).on_surface(surface.facets[:1]), 1e3, longest=1e-3)
+    assert len(one.triangles) == STEPS[-1] ** 2  # as many as there may be
+    with pytest.raises(InputError, match="at most 0 mm"):
+        tessellation(surface, longest=0)
+
+
 @pytest.mark.parametrize("tolerance", [2.0, 0.3, 0.05])
 def test_a_closed_surface_has_no_cracks(tolerance: float) -> None:
     for field, scale in ((uneven(4), 1.0), (rounded(3), 1.0), (uneven(3), 3.0)):

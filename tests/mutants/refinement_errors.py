@@ -26,6 +26,22 @@ REFINING = (
         ("tests/laws/test_estimates.py::test_beside_a_singular_edge",),
     ),
     Mutant(
+        "a dual that is believed to come as fast as the displacement",
+        f"{REFINEMENT}/estimates.py",
+        "_rate(richer.between.square(first.sharper), dual, degree),",
+        "_rate(richer.between.gain, richer.gain, degree),",
+        (
+            "tests/laws/test_estimates.py::test_a_patch_smaller_than_the_tets_has_a_dual_that_comes_slowly",
+        ),
+    ),
+    Mutant(
+        "components of a mean that forget what the loose solve left",
+        f"{REFINEMENT}/estimates.py",
+        'change = np.einsum("i,i->", load, of.correction) + np.einsum("i,i->", dual, of.left)',
+        'change = np.einsum("i,i->", load, of.correction)',
+        ("tests/laws/test_estimates.py::test_a_vector_lacks_what_its_components_do",),
+    ),
+    Mutant(
         "a dual of the solution's degree that is as loose as the others",
         f"{REFINEMENT}/raised.py",
         "np.where(self.held, 0.0, load), TIGHT)",

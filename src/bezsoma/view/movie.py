@@ -43,9 +43,9 @@ def mp4(frames: Sequence[Bytes], seconds: float) -> bytes:
         file.metadata["comment"] = f"bezsoma {__version__}. {NOTICE}"
         track = file.add_stream("libx264", rate=rate, options={"crf": _QUALITY, "threads": "1"})
         track.pix_fmt = "yuv420p"
-        for frame in frames:
-            image = even(frame)
-            track.height, track.width = image.shape[:2]
+        images = [even(frame) for frame in frames]
+        track.height, track.width = images[0].shape[:2]
+        for image in images:
             file.mux(track.encode(av.VideoFrame.from_ndarray(image, format="rgb24")))
         file.mux(track.encode())
     return stream.getvalue()
