@@ -18,6 +18,7 @@ from bezsoma.imaging.around import head_around
 from bezsoma.imaging.domain import domain
 from bezsoma.imaging.head_ct import head_ct
 from bezsoma.imaging.nrrd import write_volume
+from bezsoma.imaging.settings import LabelSettings
 from bezsoma.model import ModelSettings, run_model
 from bezsoma.results import Results
 from bezsoma.results.folder import written
@@ -64,7 +65,8 @@ def run_demo(
     progress("ct", None, "of a head, by formula")
     ct = head_ct((head.voxel,) * 3, joint=head.gap, bite=head.gap).volume
     write_volume(place / CT, ct.values, ct.frame, overwrite=True)
-    settings = ModelSettings(tets=head.tets, degree=degree, forward=6.0)
+    wide = LabelSettings(coarse=head.voxel)  # its joints are wide enough for voxels as they are
+    settings = ModelSettings(labels=wide, tets=head.tets, degree=degree, forward=6.0)
     model = run_model(place / CT, place / MODEL, settings, overwrite=overwrite, progress=progress)
     case = read_case(model.case)
     results = run_case(case, place / PREDICTION, overwrite=overwrite, progress=progress)

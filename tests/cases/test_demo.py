@@ -37,6 +37,7 @@ def test_the_demo_goes_the_whole_way(
     assert results.displacement.degree == 1
     moved = results.summary["probes"]["chin"]["displacement"]
     assert -6.5 < moved[1] < -4.5 and abs(moved[0]) < 0.5
+    assert all(0 < probe["error"] < 1 for probe in results.summary["probes"].values())  # mm
     assert cli.main(words) == 2
     assert "holds a demo already" in capsys.readouterr().err
 

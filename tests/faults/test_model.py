@@ -299,5 +299,7 @@ def test_the_command_says_what_it_made(
     plain.write_text(text.replace(pictures, "pictures = []"))
     assert cli.main(["run", str(plain), "-o", str(tmp_path / "r"), "-q"]) == 0
     assert "chin" in capsys.readouterr().out
+    probes = bz.read_results(tmp_path / "r").summary["probes"]
+    assert probes and all(0 < probe["error"] < 3 for probe in probes.values())  # mm, degree 1
     assert cli.main(["model", str(tmp_path / "none"), "-o", str(tmp_path / "x"), "-q"]) == 2
     assert cli.main([*words, "-q", "--tets", "5"]) == 2

@@ -12,6 +12,7 @@ IMAGING = "src/bezsoma/imaging"
 EXPERIMENTS = "src/bezsoma/experiments"
 READING = ("tests/laws/test_imaging_reading.py",)
 LABELS = ("tests/laws/test_imaging_labels.py::test_labels_meet_the_truth[touching, noisy]",)
+PARTED = "tests/laws/test_imaging_labels.py::test_coarse_voxels_are_parted_where_bone_is_looked_for"
 LEVELS = ("tests/laws/test_levels.py",)
 SHOTS = ("tests/laws/test_shots.py",)
 
@@ -183,6 +184,34 @@ PICTURES = (
         "level_between(values, 0.5,",
         "level_between(values, 0.1,",
         LABELS,
+    ),
+    Mutant(
+        "coarse voxels parted, the values between taken from the wrong end",
+        f"{IMAGING}/volume.py",
+        "np.float32(k / n) * step",
+        "np.float32(1 - k / n) * step",
+        (f"{IMAGING}/volume.py",),
+    ),
+    Mutant(
+        "bone of coarse voxels looked for on them as they are",
+        f"{IMAGING}/labelling.py",
+        "parts = np.ceil(spacing / settings.coarse - 1e-6).astype(int)",
+        "parts = np.ones(3, int)",
+        (PARTED,),
+    ),
+    Mutant(
+        "a number of tets sought beyond the nearer of two trials, not the farther",
+        f"{IMAGING}/tetrahedra.py",
+        "part = tried[small] / (tried[small] - tried[large])",
+        "part = tried[large] / (tried[large] - tried[small])",
+        (f"{IMAGING}/tetrahedra.py",),
+    ),
+    Mutant(
+        "a model whose prediction says nothing of its error",
+        "src/bezsoma/model/case_text.py",
+        "estimate = true",
+        "estimate = false",
+        ("tests/faults/test_model.py::test_the_command_says_what_it_made",),
     ),
     Mutant(
         "the mandible by distance alone, not by the widest bridge",

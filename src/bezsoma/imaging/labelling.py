@@ -72,40 +72,56 @@ def labels(
     level = bones.noise(part, solid)
     notes.append(f"noise in soft tissue: {level:.3g} HU")
     quiet = bones.quietened(part, level, settings)
-    found = masks.get("bone")
-    if found is None:
-        found = bones.bone(quiet, solid, part.frame.spacing, settings)
-    found = found | masks.get("mandible", np.zeros_like(found))
     notes += _metal(part, solid, settings)
+    found, jaw = _bones(part.with_values(quiet), solid, settings, masks, notes)
     values[found] = BONE
-    if settings.mandible:
-        jaw = _jaw(found, part.frame, settings, masks, notes)
-        if "mandible" not in masks:
-            grown = with_marrow(jaw, quiet, part.frame.spacing, settings)
-            jaw |= grown & (values == SOFT)
-        values[jaw] = MANDIBLE
+    values[jaw & (found | (values == SOFT))] = MANDIBLE
     if settings.tissues:
         _tissues(values, quiet, settings)
     return Labels(values, part.frame, settings, low, tuple(notes))
 
 
+def _bones(
+    quiet: Volume, solid: Bools, settings: LabelSettings, masks: dict[str, Bools], notes: list[str]
+) -> tuple[Bools, Bools]:
+    """All bone and the mandible with its marrow (z, y, x), looked for on voxels under `coarse`."""
+    spacing = quiet.frame.spacing
+    parts = np.ceil(spacing / settings.coarse - 1e-6).astype(int)
+    fine = quiet.parted(parts)
+
+    def on_fine(mask: Bools) -> Bools:
+        if (parts == 1).all():
+            return mask
+        return np.asarray(quiet.with_values(mask.astype(np.float32)).parted(parts).values > 0.5)
+
+    if (parts > 1).any():
+        sizes = " x ".join(f"{x:.3g}" for x in fine.frame.spacing)
+        notes.append(f"bone was looked for on voxels of {sizes} mm, linear between those given")
+    given = {name: on_fine(mask) for name, mask in masks.items()}
+    found = given.get("bone")
+    if found is None:
+        found = bones.bone(fine.values, on_fine(solid), fine.frame.spacing, settings)
+    found = found | given.get("mandible", np.zeros_like(found))
+    jaw = np.zeros_like(found)
+    if settings.mandible:
+        jaw = _jaw(found, fine, settings, given, notes)
+    back = tuple(slice(None, None, n) for n in parts[::-1].tolist())
+    return found[back], jaw[back]
+
+
 def _jaw(
-    found: Bools,
-    frame: Frame,
-    settings: LabelSettings,
-    masks: dict[str, Bools],
-    notes: list[str],
+    found: Bools, fine: Volume, settings: LabelSettings, given: dict[str, Bools], notes: list[str]
 ) -> Bools:
-    if "mandible" in masks:
-        return masks["mandible"]
-    jaw, bridge = mandible(found, frame, settings)
+    if "mandible" in given:
+        return given["mandible"]
+    jaw, bridge = mandible(found, fine.frame, settings)
     if bridge == 0:
         notes.append("mandible and skull touch nowhere")
     else:
         notes.append(f"mandible and skull touch; cut at a bridge {2 * bridge:.3g} mm wide")
     if bridge > FUSED:
         notes.append("LOOK: that bridge is wide; a joint may be fused, or a cut in a wrong place")
-    return jaw
+    return jaw | (with_marrow(jaw, fine.values, fine.frame.spacing, settings) & ~found)
 
 
 def _metal(part: Volume, solid: Bools, settings: LabelSettings) -> list[str]:

@@ -35,6 +35,9 @@ class LabelSettings:
     for all, dense bone becomes too thick, and a higher one loses thin bone."""
     reach: float = 1.6
     """mm: how far nearby is."""
+    coarse: float = 1.5
+    """mm: larger voxels are parted, values between them taken as linear, before bone is looked for:
+    cortex and the gaps of joints are no wider than they are. Labels are those at their centres."""
     marrow: float = 80.0
     """mm2: smaller holes of bone in a slice are marrow or nerve canals, and count as bone."""
     cortex: float = 2.0
@@ -65,6 +68,8 @@ class LabelSettings:
             value = getattr(self, name)
             if not (np.isfinite(value) and 0 <= value <= 1000):
                 raise InputError(f"{name}={value}: a number from 0 to 1000 is needed")
+        if not 0.3 <= self.coarse <= 1000:
+            raise InputError(f"coarse={self.coarse}: 0.3 to 1000 mm can be")
         if not -1000 < self.skin < self.bone < self.metal:
             raise InputError(
                 f"skin {self.skin:g}, bone {self.bone:g} and metal {self.metal:g} HU have to rise "

@@ -129,6 +129,24 @@ class Volume:
         flips = tuple(slice(None, None, int(s)) for s in signs[::-1])
         return replace(self, values=values[flips], frame=frame)
 
+    def parted(self, parts: Ints) -> Volume:
+        """Every voxel parted in whole numbers (3,) along x, y, z, linear between; float32.
+
+        The voxels that were there stay, every `parts` of the new ones; with ones nothing changes.
+
+        >>> line = Volume(np.array([[[0, 4, 2]]]), Frame([2, 1, 1], [0, 0, 0], np.eye(3)))
+        >>> fine = line.parted(np.array([4, 1, 1]))
+        >>> fine.values.tolist(), fine.frame.spacing.tolist()
+        ([[[0.0, 1.0, 2.0, 3.0, 4.0, 3.5, 3.0, 2.5, 2.0]]], [0.5, 1.0, 1.0])
+        """
+        values = self.values
+        for axis, n in enumerate(parts[::-1].tolist()):
+            if n > 1:
+                values = _parted(np.moveaxis(values, axis, 0), n)
+                values = np.moveaxis(values, 0, axis)
+        frame = replace(self.frame, spacing=self.frame.spacing / parts)
+        return replace(self, values=values, frame=frame)
+
     def resampled(
         self, frame: Frame, shape: tuple[int, int, int], order: Literal[0, 1] = 1
     ) -> Volume:
@@ -145,6 +163,17 @@ class Volume:
             self.values, turn[::-1, ::-1], start[::-1], shape[::-1], order=order, mode="nearest"
         )
         return replace(self, values=values, frame=frame)
+
+
+def _parted(values: Grid, n: int) -> Grid:
+    """Values with n - 1 more between each two along the first axis, linear, float32."""
+    last = len(values) - 1
+    fine = np.empty((last * n + 1, *values.shape[1:]), np.float32)
+    fine[::n] = values
+    step = np.diff(fine[::n], axis=0)
+    for k in range(1, n):
+        fine[k::n] = fine[:-1:n] + np.float32(k / n) * step
+    return fine
 
 
 def _nearest_axes(axes: Floats) -> Ints:

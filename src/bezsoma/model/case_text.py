@@ -33,7 +33,10 @@ type = "moved"
 on = "mandible"
 translation = [0, {back:g}, 0]
 
-{join}{probes}[output]
+{join}{probes}[error]       # how far this is from the truth, mm: takes some times as long as the solve
+estimate = true
+
+[output]
 pictures = ["three-quarter", "front", "right"]
 """
 JOIN = """\
