@@ -50,7 +50,7 @@ class Sizes:
     bone: float = 4.0
     """At every other surface."""
     largest: float = 12.0
-    growth: float = 0.3
+    growth: float = 0.5
     layer: float = 0.5
 
     def __post_init__(self) -> None:

@@ -33,7 +33,7 @@ type = "moved"
 on = "mandible"
 translation = [0, {back:g}, 0]
 
-{join}{probes}[error]       # how far this is from the truth, mm: takes some times as long as the solve
+{join}{probes}[error]       # how far all is from the truth, mm; takes some times as long as solving
 estimate = true
 
 [output]
