@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How long a solve takes, by degree and method: ./dev bench.
 
-./dev bench peers, ./dev bench roofline and ./dev bench growth run the longer measurements; see
-docs/performance.md.
+./dev bench peers, and likewise roofline, growth, mixed and nonlinear, run the longer
+measurements; see docs/performance.md.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import problem
 
 import bezsoma as bz
 
-LONGER = ("peers", "roofline", "growth")
+LONGER = ("peers", "roofline", "growth", "mixed", "nonlinear")
 
 
 def row(degree: int, solver: str, unknowns: int, threads: int) -> str:

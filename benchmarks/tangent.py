@@ -48,7 +48,7 @@ def seconds(work: Callable[[], object], spend: float = 0.5) -> float:
 def ratios(degree: int) -> dict[str, tuple[float, float, float]]:
     """Tangent, forces and tangent in float32, by law, in linear applications."""
     net = ControlNet(block(cells=CELLS[degree]), degree)
-    u = 0.01 * np.sin(7 * net.points)
+    u = 0.01 * np.sin(7 * net.points + 3 * net.points[:, [1, 2, 0]])  # strains of any frame
     K = MatrixFree(net, np.array([[KAPPA - 2 * MU / 3, MU]]), 1)
     one = seconds(lambda: K @ u)
     rule = bernstein.simplex(max(2 * degree + 2, 6), 3)

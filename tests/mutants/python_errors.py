@@ -18,7 +18,37 @@ MIXED = ("tests/laws/test_mixed.py",)
 PRESSURE = ("tests/paper/test_mixed_equations.py", "tests/twins/test_taylor_hood.py")
 SOLVES = ("src/bezsoma/equations", "src/bezsoma/solvers", "tests/paper/test_equations.py")
 
+KEPT = ("tests/laws/test_kept.py",)
+
 PYTHON = (
+    Mutant(
+        "a preconditioner built anew at rest",
+        f"{SOLVERS}/kept.py",
+        "self._renew(x)",
+        "self._renew(None)",
+        KEPT,
+    ),
+    Mutant(
+        "iterations judged without how exact the solve was",
+        f"{SOLVERS}/kept.py",
+        "self.least * digits",
+        "self.least",
+        KEPT,
+    ),
+    Mutant(
+        "moduli that change as a body turns",
+        f"{EQUATIONS}/moduli.py",
+        "_unturned(H) if law.finite else H",
+        "H",
+        KEPT,
+    ),
+    Mutant(
+        "moduli of a softened law that are not positive",
+        f"{EQUATIONS}/moduli.py",
+        "rest), SOFTEST * rest)",
+        "rest), -rest)",
+        KEPT,
+    ),
     Mutant(
         "a residual believed that was formed in float32",
         f"{SOLVERS}/krylov.py",

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bezsoma import _core
-from bezsoma.arrays import Floats, Int32s
+from bezsoma.arrays import Floats, Int32s, Ints
 from bezsoma.mesh.control_net import ControlNet
 
 
@@ -26,8 +26,9 @@ class MatrixFree:
         f_a = n V sum_i (M T)_{a-e_i} g_i,  M = sum_j a_j E_j E_j^T
 
     See docs/theory/fast.md. `lame` (regions, 2) holds lambda and mu in MPa of the regions of the
-    mesh. The answer has the same bits for any number of `threads` (0: all cores). `instructions`
-    names one of `_core.instruction_sets()`; empty takes the widest that the processor has.
+    mesh, or of those in which `region` (t,) puts the tets. The answer has the same bits for any
+    number of `threads` (0: all cores). `instructions` names one of `_core.instruction_sets()`;
+    empty takes the widest that the processor has.
 
     The assembled matrix is the proof:
 
@@ -45,6 +46,7 @@ class MatrixFree:
     lame: Floats
     threads: int = 0
     instructions: str = ""
+    region: Ints | None = None
 
     @cached_property
     def kernel(self) -> _core.MatrixFree:
@@ -60,7 +62,7 @@ class MatrixFree:
 
         lambda and mu are divided by `unit`; `first` are the `walked` controls, if at hand.
         """
-        return walk(self.net, self.lame / unit, first)
+        return walk(self.net, self.lame / unit, first, self.region)
 
     def __matmul__(self, x: Floats) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N."""
@@ -85,11 +87,13 @@ class MatrixFree:
         return self.kernel.work(np.ascontiguousarray(x)) / 2
 
 
-def walk(net: ControlNet, moduli: Floats, first: Int32s | None = None) -> _core.Walk:
+def walk(
+    net: ControlNet, moduli: Floats, first: Int32s | None = None, region: Ints | None = None
+) -> _core.Walk:
     """The tets in the order in which they numbered the controls, as the core takes them.
 
     moduli (regions, 2): lambda and mu, or what the taker reads there; `first` are the `walked`
-    controls of the net, if at hand.
+    controls of the net, if at hand; `region` (t,) replaces the regions of the mesh.
     """
     mesh = net.mesh
     return _core.Walk(
@@ -98,6 +102,6 @@ def walk(net: ControlNet, moduli: Floats, first: Int32s | None = None) -> _core.
         net.morton,
         mesh.points,
         mesh.tets,
-        mesh.region,
+        mesh.region if region is None else region,
         np.ascontiguousarray(moduli, dtype=np.float64),
     )

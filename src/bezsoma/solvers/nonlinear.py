@@ -14,6 +14,7 @@ from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.ellipticity import lost_ellipticity
 from bezsoma.equations.internal import internal_forces
 from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.moduli import moduli_at
 from bezsoma.equations.nonlinear import NonlinearEquations, nonlinear_equations
 from bezsoma.equations.pointwise import Internal, Pointwise
 from bezsoma.equations.rigid import refuse_rigid_motions
@@ -28,6 +29,7 @@ from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import DIRECT_UP_TO
 from bezsoma.solvers.factors import Waiting
+from bezsoma.solvers.kept import Kept, Precondition
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.multigrid import preconditioned
@@ -43,7 +45,7 @@ from bezsoma.solvers.newton import (
 from bezsoma.solvers.nonlinear_mixed import applied, factored_mixed, level, mixed_problem
 from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.start import State, first_displacement
-from bezsoma.solvers.tangents import Precondition, applied_tangents, factored_tangents
+from bezsoma.solvers.tangents import applied_tangents, factored_tangents
 from bezsoma.solvers.watch import Watch
 
 METHODS = {"newton": (True, 40), "modified": (False, 200), "secant": (True, 500)}
@@ -289,13 +291,19 @@ def _system(
     )
 
 
-def _preconditioner(
-    equations: NonlinearEquations, pointwise: Pointwise, threads: int
-) -> Precondition:
-    """The preconditioner of the linear laws that the laws are near rest; never built anew."""
-    lame = frozen(np.array([at_rest(law) for law in pointwise.laws]))
-    operator = MatrixFree(equations.net, lame, threads)
-    return preconditioned(operator, equations.held)
+def _preconditioner(equations: NonlinearEquations, pointwise: Pointwise, threads: int) -> Kept:
+    """The preconditioner of the linear laws that the laws are near, at rest and then as it pays."""
+    net = equations.net
+
+    def built(x: Floats | None) -> Precondition:
+        if x is None:
+            lame = frozen(np.array([at_rest(law) for law in pointwise.laws]))
+            return preconditioned(MatrixFree(net, lame, threads), equations.held)
+        lame = frozen(moduli_at(pointwise, x.reshape(-1, 3)))
+        operator = MatrixFree(net, lame, threads, region=np.arange(len(lame)))
+        return preconditioned(operator, equations.held)
+
+    return Kept(built)
 
 
 def _balance(

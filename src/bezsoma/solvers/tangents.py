@@ -18,12 +18,11 @@ from bezsoma.errors import NotConverged
 from bezsoma.solvers.bicgstab import stabilised
 from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.gmres import minimal_residual
+from bezsoma.solvers.kept import Kept
 from bezsoma.solvers.krylov import conjugate_gradients
 from bezsoma.solvers.newton import Breakdown, Correction, Linearised
 
 MOST_ITERATIONS = 800
-
-Precondition = Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,12 +65,12 @@ class Factored:
 
 @dataclass(frozen=True, eq=False)
 class Applied:
-    """A tangent that is only applied, and the preconditioner of the linear law at rest."""
+    """A tangent that is only applied, and the preconditioner of a linear law that it is near."""
 
     tangent: Tangent
     follow: csr_array[Any] | None
     held: Bools
-    precondition: Precondition
+    precondition: Kept
     symmetric: bool
 
     def product(self, dx: Floats) -> Floats:
@@ -94,7 +93,9 @@ class Applied:
         try:
             x, count, event = self._solved(scaled, rtol)
         except NotConverged as failure:
+            self.precondition.learn(MOST_ITERATIONS, rtol)
             raise Breakdown(str(failure)) from failure
+        self.precondition.learn(count, rtol)
         return Correction(x.ravel() * size, count, event)
 
     def _solved(self, b: Floats, rtol: float) -> Correction:
@@ -150,13 +151,14 @@ def factored_tangents(
 def applied_tangents(
     equations: NonlinearEquations,
     tangent: Callable[[Floats], Tangent],
-    precondition: Precondition,
+    precondition: Kept,
     symmetric: bool,
 ) -> Callable[[Floats, float], Linearised]:
     """What gives the tangent at x (n,) and a fraction of the load, without a matrix."""
 
     def at(x: Floats, fraction: float) -> Applied:
         u = x.reshape(-1, 3)
+        precondition.at(x)
         follow = equations.follow(u, fraction)
         return Applied(tangent(u), follow, equations.held, precondition, symmetric)
 

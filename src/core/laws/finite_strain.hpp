@@ -45,25 +45,32 @@ template <class Law> struct FiniteStrain {
                 P[k] += volume * x.cof[k / 3][k % 3];
     }
 
-    /// The change dP of P for a change dH of H: by dual numbers, but for what stands between the
-    /// weights and P, where these would work out much that has no change.
+    /// The change dP of P for a change dH of H: dual numbers where they are the law's, by hand
+    /// between those and P, where they would work out much that has no change.
     template <bool mixed, class T, class R>
     static BEZSOMA_INLINE void derivative(const T *par, int n, const R *H, const R *dH, R *dP,
                                           Watch<R> &watch) {
-        if constexpr (Law::of_invariants) {
+        if constexpr (weighs_F()) {
             const Changing<R> x(H, dH);
-            Weights<Dual<R>> w = Law::weights(par, x.template invariants<Law::turns>(), watch);
-            if constexpr (Law::splits) {
-                Dual<R> state[10], answer[10];
-                if constexpr (mixed)
-                    state[9] = {H[9], dH[9]};
-                w.volume += pressure<mixed>(par, state, x.j, answer);
-                if constexpr (mixed)
-                    dP[9] = answer[9].d;
-            }
-            x.template weighted<Law::turns>(w, dP);
+            const Weights<Dual<R>> w = Law::weights(par, x.invariants(), watch);
+            Dual<R> volume = w.volume - w.shear;
+            if constexpr (Law::splits)
+                volume += changing_pressure<mixed>(par, H, dH, x.j, dP);
+            x.weighted(w.shear * (x.j + T(1)), volume, dP);
         } else {
-            by_duals<FiniteStrain, mixed>(par, n, H, dH, dP, watch);
+            const Squared<R> x(H, dH);
+            Dual<R> s[6];
+            if constexpr (Law::of_invariants) {
+                isochoric_stress<Law>(par, x, s, watch);
+            } else {
+                Dual<R> E[6];
+                for (int c = 0; c < 6; ++c)
+                    E[c] = c < 3 ? x.C[c] * T(0.5) - T(0.5) : x.C[c] * T(0.5);
+                Law::second_piola(par, n, E, s, watch);
+            }
+            if constexpr (Law::splits)
+                x.swollen(changing_pressure<mixed>(par, H, dH, x.j(), dP), s);
+            x.pushed(s, dP);
         }
     }
 
@@ -86,6 +93,13 @@ template <class Law> struct FiniteStrain {
     }
 
 private:
+    /// Whether P is a sum of F and J F^-T.
+    static constexpr bool weighs_F() {
+        if constexpr (Law::of_invariants)
+            return !Law::turns;
+        return false;
+    }
+
     /// kappa (J - 1), or mixed - p and c at P[9].
     template <bool mixed, class T, class S>
     static BEZSOMA_INLINE S pressure(const T *par, const S *H, const S &j, S *P) {
@@ -95,6 +109,18 @@ private:
         } else {
             return j * par[0];
         }
+    }
+
+    template <bool mixed, class T, class R>
+    static BEZSOMA_INLINE Dual<R> changing_pressure(const T *par, const R *H, const R *dH,
+                                                    const Dual<R> &j, R *dP) {
+        Dual<R> state[10], answer[10];
+        if constexpr (mixed)
+            state[9] = {H[9], dH[9]};
+        const Dual<R> found = pressure<mixed>(par, state, j, answer);
+        if constexpr (mixed)
+            dP[9] = answer[9].d;
+        return found;
     }
 
     template <class S> static BEZSOMA_INLINE Invariants<S> invariants(const Motion<S> &x) {
@@ -163,7 +189,8 @@ struct NeoHookeIsochoric {
 
     template <class T, class S, class R>
     static BEZSOMA_INLINE Weights<S> weights(const T *par, const Invariants<S> &x, Watch<R> &) {
-        const S a = exp(log_J(x) * T(-5.0 / 3)) * par[1];
+        const Roots<S> of = roots(x);
+        const S a = of.squared * of.inverse * par[1];
         return {a, a * x.trace * T(-2.0 / 3), S{}};
     }
 
@@ -175,25 +202,63 @@ struct NeoHookeIsochoric {
 
 /// P of an energy of both isochoric invariants whose derivatives by them are w1 and w2:
 ///   2 w1 J^(-2/3) (F - I1/3 F^-T) + 2 w2 J^(-4/3) (I1 F - F C - 2/3 I2 F^-T)
-/// with C = I + 2 E, so that nothing cancels at rest. `a` is J^(-2/3).
-template <class S>
-BEZSOMA_INLINE Weights<S> isochoric_weights(const Invariants<S> &x, const S &a, const S &w1,
-                                            const S &w2) {
+/// with C = I + 2 E, so that nothing cancels at rest.
+template <class S, class W1, class W2>
+BEZSOMA_INLINE Weights<S> isochoric_weights(const Invariants<S> &x, const Roots<S> &of,
+                                            const W1 &w1, const W2 &w2) {
     using T = Plain<S>;
-    const S first = a * x.inverse * T(2), one = first * w1, two = first * a * w2;
-    return {one + two * T(2), one * x.trace * T(-2.0 / 3) - two * (x.trace + x.second) * T(8.0 / 3),
-            two * (x.j + T(1)) * T(2)};
+    const S turned = of.squared * of.squared * (w2 * T(4));
+    const S one = of.squared * of.inverse * (w1 * T(2)), two = turned * of.inverse;
+    return {one + two, one * x.trace * T(-2.0 / 3) - two * (x.trace + x.second) * T(4.0 / 3),
+            turned};
 }
 
-/// c1 (I1bar - 3) + c2 (I2bar - 3); parameters kappa, c1, c2.
-struct MooneyRivlin {
+/// The change of its S, with C and its cofactors.
+template <class Law, class T, class R>
+BEZSOMA_INLINE void isochoric_stress(const T *par, const Squared<R> &x, Dual<R> (&s)[6],
+                                     Watch<R> &watch) {
+    const R square = x.root * x.root;
+    const Dual<R> I1 = x.C[0] + x.C[1] + x.C[2], I2 = x.K[0] + x.K[1] + x.K[2];
+    const Dual<R> a = x.power(2, square);
+    const auto w1 = Law::first_slope(par, a * I1 - T(3), watch);
+    const Dual<R> one = a * (w1 * T(2));
+    const Dual<R> two = x.power(4, square * square * (Law::second_slope(par) * 2));
+    const Dual<R> plain = one + two * I1;
+    const Dual<R> mean = (one * I1 + two * I2 * T(2)) * T(-1.0 / 3);
+    const Dual<R> weight = mean * x.power(6, x.inverse * x.inverse);
+    for (int c = 0; c < 6; ++c) {
+        s[c] = c < 3 ? plain : Dual<R>{};
+        s[c].v = c < 3 ? plain.v - two.v * x.C[c].v : -two.v * x.C[c].v;
+        s[c].v += weight.v * x.K[c].v;
+        s[c].d = c < 3 ? plain.d - two.d * x.C[c].v : -two.d * x.C[c].v;
+        s[c].d -= two.v * x.C[c].d;
+        s[c].d += weight.d * x.K[c].v;
+        s[c].d += weight.v * x.K[c].d;
+    }
+}
+
+/// A law of both isochoric invariants says the derivatives of its energy by them, the second of
+/// which does not change.
+template <class Law> struct Isochoric {
     static constexpr bool splits = true, of_invariants = true, turns = true;
 
     template <class T, class S, class R>
-    static BEZSOMA_INLINE Weights<S> weights(const T *par, const Invariants<S> &x, Watch<R> &) {
-        const S zero = {};
-        return isochoric_weights(x, exp(log_J(x) * T(-2.0 / 3)), zero + par[1], zero + par[2]);
+    static BEZSOMA_INLINE Weights<S> weights(const T *par, const Invariants<S> &x,
+                                             Watch<R> &watch) {
+        const Roots<S> of = roots(x);
+        const S first = (of.squared - T(1)) * T(3) + of.squared * x.trace * T(2);
+        return isochoric_weights(x, of, Law::first_slope(par, first, watch),
+                                 Law::second_slope(par));
     }
+};
+
+/// c1 (I1bar - 3) + c2 (I2bar - 3); parameters kappa, c1, c2.
+struct MooneyRivlin : Isochoric<MooneyRivlin> {
+    template <class T, class S, class R>
+    static BEZSOMA_INLINE T first_slope(const T *par, const S &, Watch<R> &) {
+        return par[1];
+    }
+    template <class T> static T second_slope(const T *par) { return par[2]; }
 
     template <class T, class R>
     static BEZSOMA_INLINE R energy(const T *par, const Invariants<R> &x, Watch<R> &) {
@@ -203,17 +268,12 @@ struct MooneyRivlin {
 };
 
 /// c1 (exp(c2 (I1bar - 3)) - 1) - c1 c2/2 (I2bar - 3); parameters kappa, c1, c2.
-struct VerondaWestmann {
-    static constexpr bool splits = true, of_invariants = true, turns = true;
-
+struct VerondaWestmann : Isochoric<VerondaWestmann> {
     template <class T, class S, class R>
-    static BEZSOMA_INLINE Weights<S> weights(const T *par, const Invariants<S> &x,
-                                             Watch<R> &watch) {
-        const S zero = {}, a = exp(log_J(x) * T(-2.0 / 3));
-        const S first = (a - T(1)) * T(3) + a * x.trace * T(2);
-        const S w1 = watched_exp(first * par[2], watch) * (par[1] * par[2]);
-        return isochoric_weights(x, a, w1, zero - par[1] * par[2] / 2);
+    static BEZSOMA_INLINE S first_slope(const T *par, const S &first, Watch<R> &watch) {
+        return watched_exp(first * par[2], watch) * (par[1] * par[2]);
     }
+    template <class T> static T second_slope(const T *par) { return -par[1] * par[2] / 2; }
 
     template <class T, class R>
     static BEZSOMA_INLINE R energy(const T *par, const Invariants<R> &x, Watch<R> &watch) {
@@ -230,22 +290,45 @@ struct VerondaWestmann {
 struct Guccione {
     static constexpr bool splits = true, of_invariants = false;
 
+    /// E:half, half being linear in E.
+    template <class R> static BEZSOMA_INLINE R square(const R (&E)[6], const R (&half)[6]) {
+        R normal = E[0] * half[0], shear = E[3] * half[3];
+        for (int c = 1; c < 3; ++c) {
+            normal += E[c] * half[c];
+            shear += E[3 + c] * half[3 + c];
+        }
+        return normal + 2 * shear;
+    }
+    template <class R>
+    static BEZSOMA_INLINE Dual<R> square(const Dual<R> (&E)[6], const Dual<R> (&half)[6]) {
+        R strain[6], change[6], by[6];
+        for (int c = 0; c < 6; ++c) {
+            strain[c] = E[c].v;
+            change[c] = E[c].d;
+            by[c] = half[c].v;
+        }
+        return {square(strain, by), 2 * square(change, by)};
+    }
+
     /// Q, and half its derivative by E.
     template <class T, class S>
     static BEZSOMA_INLINE S exponent(const T *par, const S (&E)[6], S (&half)[6]) {
         constexpr int of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
         const T *f = par + 5, across = par[4] - par[3], along = par[2] + par[3] - 2 * par[4];
-        S Ef[3];
+        S z[3];
         for (int k = 0; k < 3; ++k)
-            Ef[k] = E[of[k][0]] * f[0] + E[of[k][1]] * f[1] + E[of[k][2]] * f[2];
-        const S stretch = Ef[0] * f[0] + Ef[1] * f[1] + Ef[2] * f[2], more = stretch * along;
-        S Q = {};
+            z[k] = E[of[k][0]] * f[0] + E[of[k][1]] * f[1] + E[of[k][2]] * f[2];
+        const S more = (z[0] * f[0] + z[1] * f[1] + z[2] * f[2]) * (along / 2);
+        for (int k = 0; k < 3; ++k)
+            z[k] = z[k] * across + more * f[k];
         for (int c = 0; c < 6; ++c) {
             const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
-            half[c] = E[c] * par[3] + (Ef[k] * f[l] + Ef[l] * f[k]) * across + more * (f[k] * f[l]);
-            Q += E[c] * half[c] * T(c < 3 ? 1 : 2);
+            if (c < 3)
+                half[c] = E[c] * par[3] + z[k] * (2 * f[k]);
+            else
+                half[c] = E[c] * par[3] + z[k] * f[l] + z[l] * f[k];
         }
-        return Q;
+        return square(E, half);
     }
 
     template <class T, class S, class R>

@@ -26,6 +26,8 @@ template <> struct Integers<double> {
     static constexpr double least = -708, greatest = 709;
     static constexpr int exp_terms = 13, log_terms = 10, root_steps = 4;
     static constexpr Int root_magic = 0x5fe6eb50c7b537a9; // C. Lomont 2003
+    static constexpr Int cube_magic = 0x553ef0ff289dd796;
+    static constexpr int cube_steps = 3;
 };
 template <> struct Integers<float> {
     typedef int Int;
@@ -35,6 +37,8 @@ template <> struct Integers<float> {
     static constexpr float least = -87, greatest = 88;
     static constexpr int exp_terms = 7, log_terms = 5, root_steps = 3;
     static constexpr Int root_magic = 0x5f375a86;
+    static constexpr Int cube_magic = 0x54a21d2a;
+    static constexpr int cube_steps = 2;
 };
 
 template <class R> struct Bits {
@@ -135,6 +139,21 @@ template <class R> BEZSOMA_INLINE R reciprocal_root(const R &x) {
     const R half = x * static_cast<Scalar<R>>(0.5);
     for (int i = 0; i < I::root_steps; ++i)
         root = root + root * (static_cast<Scalar<R>>(0.5) - half * root * root);
+    return root;
+}
+
+/// x^(-1/3) for normal x > 0, alike: of -1/3 its logarithm, and steps that treble its digits.
+template <class R> BEZSOMA_INLINE R reciprocal_cube_root(const R &x) {
+    using I = Integers<Scalar<R>>;
+    using Int = typename Bits<R>::Int;
+    const Int i = (Int)x, two = (i >> 2) + (i >> 4); // i/3 = i/4 + i/16 + i/64 + ...
+    const Int four = two + (two >> 4);
+    R root = (R)(I::cube_magic - (four + (four >> 8)));
+    for (int step = 0; step < I::cube_steps; ++step) {
+        const R left = 1 - (x * root) * (root * root);
+        root += (root * left) *
+                (left * static_cast<Scalar<R>>(2.0 / 9) + static_cast<Scalar<R>>(1.0 / 3));
+    }
     return root;
 }
 

@@ -107,6 +107,21 @@ template <class R> BEZSOMA_INLINE Dual<R> log_J(const Invariants<Dual<R>> &x) {
     return {log1p(x.j.v), x.j.d * x.inverse.v};
 }
 
+/// J^(-2/3) and 1/J.
+template <class S> struct Roots {
+    S squared, inverse;
+};
+template <class R> BEZSOMA_INLINE Roots<R> roots(const Invariants<R> &x) {
+    const R root = reciprocal_cube_root(x.j + 1), squared = root * root;
+    return {squared, squared * root};
+}
+template <class R> BEZSOMA_INLINE Roots<Dual<R>> roots(const Invariants<Dual<R>> &x) {
+    using T = Scalar<R>;
+    const Roots<R> of = roots(Invariants<R>{x.j.v, {}, {}, {}});
+    const R log = of.inverse * x.j.d; // the change of ln J
+    return {{of.squared, of.squared * log * T(-2.0 / 3)}, {of.inverse, -of.inverse * log}};
+}
+
 /// An isotropic law: P = shear J (F - F^-T) + volume J F^-T + turned F (tr E I - E).
 template <class S> struct Weights {
     S shear, volume, turned;
@@ -127,52 +142,117 @@ template <class R> struct Changing {
             for (int l = 0; l < 3; ++l) {
                 const int a = (k + 1) % 3, b = (k + 2) % 3, c = (l + 1) % 3, d = (l + 2) % 3;
                 cof[k][l] = F[a][c] * F[b][d] - F[a][d] * F[b][c];
-                dcof[k][l] = crossed(F, dF, k, l);
+                dcof[k][l] = F[a][c] * dF[b][d] - F[a][d] * dF[b][c] + dF[a][c] * F[b][d] -
+                             dF[a][d] * F[b][c];
                 j.d += cof[k][l] * dF[k][l];
             }
         for (int l = 0; l < 3; ++l)
             j.v += F[0][l] * cof[0][l];
     }
 
-    /// Entry kl of A x B, the form of which A x A = 2 cof A is the square.
-    static BEZSOMA_INLINE R crossed(const R (&A)[3][3], const R (&B)[3][3], int k, int l) {
-        const int a = (k + 1) % 3, b = (k + 2) % 3, c = (l + 1) % 3, d = (l + 2) % 3;
-        return A[a][c] * B[b][d] - A[a][d] * B[b][c] + B[a][c] * A[b][d] - B[a][d] * A[b][c];
-    }
-
-    template <bool second> BEZSOMA_INLINE Invariants<Dual<R>> invariants() const {
+    /// But for I2.
+    BEZSOMA_INLINE Invariants<Dual<R>> invariants() const {
         using T = Scalar<R>;
-        Dual<R> trace = {R{} - T(1.5), R{}}, I2 = {R{} - T(0.75), R{}};
+        Dual<R> trace = {R{} - T(1.5), R{}};
         for (int k = 0; k < 9; ++k) {
-            const R &f = F[k / 3][k % 3], half = f * T(0.5);
-            trace += {half * f, f * dF[k / 3][k % 3]};
+            const R &f = F[k / 3][k % 3];
+            trace.v += f * (f * T(0.5));
+            trace.d += f * dF[k / 3][k % 3];
         }
-        if constexpr (second) { // I2(C) = cof:cof = 3 + 4 tr E + 4 I2(E)
-            for (int k = 0; k < 9; ++k) {
-                const R quarter = cof[k / 3][k % 3] * T(0.25);
-                I2 += {quarter * cof[k / 3][k % 3], (quarter + quarter) * dcof[k / 3][k % 3]};
-            }
-            I2 = I2 - trace;
-        }
-        return {j, reciprocal(j + T(1)), trace, I2};
+        return {j, reciprocal(j + T(1)), trace, Dual<R>{}};
     }
 
-    /// The change of P, with F (tr E I - E) = cof x F / 2 - F.
-    template <bool turns> BEZSOMA_INLINE void weighted(const Weights<Dual<R>> &w, R *dP) const {
-        using T = Scalar<R>;
-        const Dual<R> volume = w.volume - w.shear, half = w.turned * T(0.5);
-        Dual<R> plain = w.shear * (j + T(1));
-        if constexpr (turns)
-            plain = plain - w.turned;
+    /// The change of plain F + volume J F^-T.
+    BEZSOMA_INLINE void weighted(const Dual<R> &plain, const Dual<R> &volume, R *dP) const {
         for (int k = 0; k < 3; ++k)
-            for (int l = 0; l < 3; ++l) {
-                R found = plain.d * F[k][l] + plain.v * dF[k][l];
-                found += volume.d * cof[k][l] + volume.v * dcof[k][l];
-                if constexpr (turns)
-                    found += half.d * crossed(cof, F, k, l) +
-                             half.v * (crossed(dcof, F, k, l) + crossed(cof, dF, k, l));
+            for (int l = 0; l < 3; ++l) { // one by one: products and sums fuse
+                R found = plain.d * F[k][l];
+                found += plain.v * dF[k][l];
+                found += volume.d * cof[k][l];
+                found += volume.v * dcof[k][l];
                 dP[3 * k + l] = found;
             }
+    }
+};
+
+/// The same for P = F S: symmetric tensors XX YY ZZ XY YZ ZX in place of F's nine.
+template <class R> struct Squared {
+    R F[3][3], dF[3][3];
+    Dual<R> C[6], K[6]; // F^T F and its cofactors, J^2 C^-1
+    R J, root, inverse; // J^(-1/3), 1/J
+    R log;              // the change of ln J
+
+    BEZSOMA_INLINE Squared(const R *H, const R *dH) {
+        for (int k = 0; k < 9; ++k) {
+            F[k / 3][k % 3] = k % 4 ? H[k] : H[k] + 1;
+            dF[k / 3][k % 3] = dH[k];
+        }
+        for (int c = 0; c < 6; ++c) {
+            const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
+            C[c].v = F[0][k] * F[0][l] + F[1][k] * F[1][l] + F[2][k] * F[2][l];
+            C[c].d = F[0][k] * dF[0][l] + F[1][k] * dF[1][l] + F[2][k] * dF[2][l];
+            if (c < 3)
+                C[c].d += C[c].d;
+            else
+                C[c].d = C[c].d + dF[0][k] * F[0][l] + dF[1][k] * F[1][l] + dF[2][k] * F[2][l];
+        }
+        constexpr int of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+        for (int c = 0; c < 6; ++c) {
+            const int k = c % 3, l = c < 3 ? k : (k + 1) % 3;
+            K[c] = difference(C[of[(k + 1) % 3][(l + 1) % 3]], C[of[(k + 2) % 3][(l + 2) % 3]],
+                              C[of[(k + 1) % 3][(l + 2) % 3]], C[of[(k + 2) % 3][(l + 1) % 3]]);
+        }
+        J = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]);
+        J += F[0][1] * (F[1][2] * F[2][0] - F[1][0] * F[2][2]);
+        J += F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+        root = reciprocal_cube_root(J);
+        inverse = root * root * root;
+        R shear = K[3].v * C[3].d, twice = K[0].v * C[0].d;
+        for (int c = 1; c < 3; ++c) {
+            shear += K[3 + c].v * C[3 + c].d;
+            twice += K[c].v * C[c].d;
+        }
+        log = (twice * Scalar<R>(0.5) + shear) * (inverse * inverse);
+    }
+
+    /// J - 1, with its change.
+    BEZSOMA_INLINE Dual<R> j() const { return {J - 1, J * log}; }
+
+    /// `value` = factor J^(-k/3), with its change.
+    BEZSOMA_INLINE Dual<R> power(int k, const R &value) const {
+        return {value, value * log * Scalar<R>(-k / 3.0)};
+    }
+
+    /// Adds volume J C^-1.
+    BEZSOMA_INLINE void swollen(const Dual<R> &volume, Dual<R> (&s)[6]) const {
+        const Dual<R> weight = volume * power(3, inverse);
+        for (int c = 0; c < 6; ++c) {
+            s[c].v += weight.v * K[c].v;
+            s[c].d += weight.d * K[c].v;
+            s[c].d += weight.v * K[c].d;
+        }
+    }
+
+    /// The change of F S.
+    BEZSOMA_INLINE void pushed(const Dual<R> (&s)[6], R *dP) const {
+        constexpr int of[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+        for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l) {
+                R found = F[k][0] * s[of[0][l]].d;
+                found += F[k][1] * s[of[1][l]].d;
+                found += F[k][2] * s[of[2][l]].d;
+                found += dF[k][0] * s[of[0][l]].v;
+                found += dF[k][1] * s[of[1][l]].v;
+                found += dF[k][2] * s[of[2][l]].v;
+                dP[3 * k + l] = found;
+            }
+    }
+
+private:
+    /// a b - c d
+    static BEZSOMA_INLINE Dual<R> difference(const Dual<R> &a, const Dual<R> &b, const Dual<R> &c,
+                                             const Dual<R> &d) {
+        return {a.v * b.v - c.v * d.v, a.v * b.d + a.d * b.v - c.v * d.d - c.d * d.v};
     }
 };
 
