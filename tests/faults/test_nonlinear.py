@@ -266,3 +266,34 @@ def test_tangent_that_is_not_positive_is_told() -> None:
     said = [event for each in found.path for event in each.events]
     assert any("direction without positive energy" in event for event in said)
     assert found.residual <= 1e-10
+
+
+def fails_above(what: Any) -> Any:
+    """A law's function that is sound near rest and answers otherwise beyond."""
+    return lambda H: H if np.abs(H.real).max() < 0.05 else what(H)
+
+
+def test_user_law_that_raises_is_told_with_its_reason() -> None:
+    def broken(H: Any) -> Any:
+        raise ZeroDivisionError("of my own")
+
+    with pytest.raises(bz.InputError, match=r"stress of FunctionLaw raises ZeroDivisionError \(of"):
+        bz.FunctionLaw(broken)
+    with pytest.raises(bz.InputError, match=r"raises ZeroDivisionError \(of my own\) for H"):
+        bz.solve(body(bz.FunctionLaw(fails_above(broken)), (0, 0, 0.4)))
+
+
+def test_user_law_that_answers_with_another_shape_at_large_strain() -> None:
+    with pytest.raises(bz.InputError, match=r"answers with shape \(\d+, \d+, 3\) for H of shape"):
+        bz.solve(body(bz.FunctionLaw(fails_above(lambda H: H[..., 0])), (0, 0, 0.4)))
+
+
+def test_tissue_that_folds_between_the_points_of_the_quadrature_is_told() -> None:
+    """One cell whose top is pushed far below its bottom: all points asked have J > 0."""
+    supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0, 0, -1.5))]
+    folded = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))
+    (said,) = folded.path[-1].events
+    assert "turned inside out at corners of 6 of 6 tets" in said and "region 'tissue'" in said
+    supports[1] = bz.Moved("top", translation=(0, 0, -0.2))
+    sound = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))
+    assert not sound.path[-1].events

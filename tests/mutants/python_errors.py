@@ -22,6 +22,20 @@ KEPT = ("tests/laws/test_kept.py",)
 
 PYTHON = (
     Mutant(
+        "tissue that folds at one corner of a tet alone is not seen",
+        f"{EQUATIONS}/inside_out.py",
+        "(J <= 0).any(axis=1)",
+        "(J <= 0).all(axis=1)",
+        ("tests/faults/test_nonlinear.py",),
+    ),
+    Mutant(
+        "a law of the user's whose shape is believed after rest",
+        f"{MECHANICS}/laws.py",
+        "if np.shape(found) != shape:",
+        "if np.shape(found) != shape and len(H) < 4:",
+        ("tests/faults/test_nonlinear.py",),
+    ),
+    Mutant(
         "a preconditioner built anew at rest",
         f"{SOLVERS}/kept.py",
         "self._renew(x)",

@@ -175,9 +175,12 @@ class Pointwise:
             total += float(np.einsum("tq,q,t->", W, weights, self.net.mesh.volumes[tets]))
         return total
 
-    def gradients(self, u: Floats, tets: Ints) -> Floats:
-        """H (t, q, 3, 3) at the points of some tets; zero, not nearly so, for a translation."""
-        partials, _ = self.rule
+    def gradients(self, u: Floats, tets: Ints, partials: Floats | None = None) -> Floats:
+        """H (t, q, 3, 3) at the points of some tets; zero, not nearly so, for a translation.
+
+        `partials` (q, m, 4) are those of other points than the rule's.
+        """
+        partials = self.rule[0] if partials is None else partials
         local = u[self.net.of_tet[tets]]
         local = np.swapaxes(local - local[:, :1], 1, 2)[:, None]
         steps = local @ partials

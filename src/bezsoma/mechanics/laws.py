@@ -134,7 +134,7 @@ class FunctionLaw:
 
     def stress(self, H: Floats) -> Floats:
         """What the function says, (..., 3, 3) MPa, and the pressure of the volume."""
-        shape = self.function(H)
+        shape = self._asked("stress", self.function, H)
         if self.kappa is None:
             return shape
         change, gradient = _volume(H, self.finite)
@@ -154,14 +154,16 @@ class FunctionLaw:
         """The energy that was given and that of the volume, or stress : H, N/mm2."""
         if self.stored is None:
             return np.asarray(np.einsum("...ij,...ij->...", self.stress(H), H))
+        stored = self._asked("energy", self.stored, H)
         if self.kappa is None:
-            return self.stored(H)
-        return np.asarray(self.stored(H) + self.kappa / 2 * _volume(H, self.finite)[0] ** 2)
+            return stored
+        return np.asarray(stored + self.kappa / 2 * _volume(H, self.finite)[0] ** 2)
 
     def mixed_stress(self, H: Floats, p: Floats) -> tuple[Floats, Floats]:
         """P and c: see `MixedLaw`."""
         change, gradient = _volume(H, self.finite)
-        return self.function(H) - p[..., None, None] * gradient, -change - p / self._kappa
+        shape = self._asked("stress", self.function, H)
+        return shape - p[..., None, None] * gradient, -change - p / self._kappa
 
     def mixed_derivative(
         self, H: Floats, p: Floats, dH: Floats, dp: Floats
@@ -175,9 +177,9 @@ class FunctionLaw:
     def mixed_energy(self, H: Floats, p: Floats) -> Floats:
         """The energy of the shape, or its stress : H, and p^2 / (2 kappa), N/mm2."""
         if self.stored is not None:
-            shape = self.stored(H)
+            shape = self._asked("energy", self.stored, H)
         else:
-            shape = np.einsum("...ij,...ij->...", self.function(H), H)
+            shape = np.einsum("...ij,...ij->...", self._asked("stress", self.function, H), H)
         return np.asarray(shape + p**2 / (2 * self._kappa))
 
     @property
@@ -188,12 +190,32 @@ class FunctionLaw:
     def shape_slope(self, H: Floats, dH: Floats) -> Floats:
         """The change of the function in the direction dH, without the volume's."""
         if callable(self.slope):
-            return self.slope(H, dH)
+            return self._asked("derivative", self.slope, H, dH)
+        stress = lambda H: self._asked("stress", self.function, H)  # noqa: E731
         if self.slope == "complex step":
-            return np.asarray(self.function(H + 1j * COMPLEX_STEP * dH).imag / COMPLEX_STEP)
+            return np.asarray(stress(H + 1j * COMPLEX_STEP * dH).imag / COMPLEX_STEP)
         size = np.sqrt((dH**2).sum(axis=(-2, -1), keepdims=True))
         h = DIFFERENCE / np.where(size > 0, size, 1.0)
-        return np.asarray((self.function(H + h * dH) - self.function(H - h * dH)) / (2 * h))
+        return np.asarray((stress(H + h * dH) - stress(H - h * dH)) / (2 * h))
+
+    def _asked(self, what: str, function: Callable[..., Floats], *arrays: Floats) -> Floats:
+        """What a function of the user's answers, refused where it raises or has another shape."""
+        H = np.broadcast_shapes(*(array.shape for array in arrays))
+        each = {"energy": "number", "stress": "3 x 3 stress"}.get(what, "3 x 3 change of stress")
+        shape = H[:-2] if what == "energy" else H
+        try:
+            found = function(*arrays)
+        except Exception as error:
+            raise InputError(
+                f"the {what} of FunctionLaw raises {type(error).__name__} ({error}) for H of shape "
+                f"{H}; it must answer for arrays of any such shape and any H with det(I + H) > 0"
+            ) from error
+        if np.shape(found) != shape:
+            raise InputError(
+                f"the {what} of FunctionLaw answers with shape {np.shape(found)} for H of shape "
+                f"{H}; it must give one {each} for each H, shape {shape}"
+            )
+        return found
 
 
 def _volume(H: Floats, finite: bool) -> tuple[Floats, Floats]:
@@ -269,29 +291,17 @@ class Secant:
 def _answers(law: FunctionLaw) -> None:
     """Refuses a function that does not answer with stress at rest, or cannot be differentiated."""
     rest = np.zeros((2, 3, 3))
-    shape = np.shape(law.function(rest))
-    if shape != rest.shape:
-        raise InputError(
-            f"the stress of FunctionLaw answers with shape {shape} for H of shape (2, 3, 3); it "
-            "must give one 3 x 3 stress for each H"
-        )
+    law.stress(rest)
     try:
         slope = law.shape_slope(rest, np.tile(np.diag([1.0, 0.5, 0.2]), (2, 1, 1)))
-    except (TypeError, AttributeError, np.exceptions.ComplexWarning) as error:
+    except InputError as error:
+        if callable(law.slope):
+            raise
         raise InputError(
-            f"the derivative of FunctionLaw cannot be taken ({error}); give derivative=a function "
-            "of (H, dH), or 'differences'"
+            f"the derivative of FunctionLaw cannot be taken ({error.__cause__ or error}); give "
+            "derivative=a function of (H, dH), or 'differences'"
         ) from error
-    if np.shape(slope) != rest.shape:
-        raise InputError(
-            f"the derivative of FunctionLaw answers with shape {np.shape(slope)} for H and dH of "
-            "shape (2, 3, 3); it must give one 3 x 3 change of stress for each"
-        )
-    if law.stored is not None and np.shape(law.stored(rest)) != (2,):
-        raise InputError(
-            f"the energy of FunctionLaw answers with shape {np.shape(law.stored(rest))} for H of "
-            "shape (2, 3, 3); it must give one number for each H, shape (2,)"
-        )
+    law.energy(rest)
     if not (np.isfinite(slope).all() and np.any(slope)):
         raise InputError(
             "the derivative of FunctionLaw at rest is zero or not finite: a complex step needs a "

@@ -12,6 +12,7 @@ import numpy as np
 from bezsoma.arrays import Floats, frozen
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.ellipticity import lost_ellipticity
+from bezsoma.equations.inside_out import inside_out
 from bezsoma.equations.internal import internal_forces
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.moduli import moduli_at
@@ -340,6 +341,7 @@ def _solution(
     pull = form.pull(x) - equations.applied(u, reached.fraction)
     in_balance = [each for each in reached.path if each.fraction <= reached.fraction]
     history = tuple(iteration.residual for iteration in reached.path)
+    path = _with_what_is_turned(equations, u, reached.path)
     return Solution(
         body_at(equations.body, reached.fraction),
         displacement,
@@ -353,8 +355,18 @@ def _solution(
         free=int(len(form.system.held) - form.system.held.sum()),
         timings=timings,
         pressure=form.pressure(x),
-        path=reached.path,
+        path=path,
     )
+
+
+def _with_what_is_turned(
+    equations: NonlinearEquations, u: Floats, path: tuple[Iteration, ...]
+) -> tuple[Iteration, ...]:
+    """The path, its last iteration with what is turned inside out at u, if anything is."""
+    said = inside_out(equations.net, equations.body.material_of_region, u)
+    if not said or not path:
+        return path
+    return (*path[:-1], replace(path[-1], events=(*path[-1].events, said)))
 
 
 def _unreached(reached: Reached, last: Solution) -> NotConverged:
