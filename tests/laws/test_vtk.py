@@ -29,7 +29,7 @@ VTK_TETRA_4 = (
     " 0301 0202 0103 0031 0022 0013 2101 1201 1102 0121 0112 0211 2011 1012 1021 2110 1120 1210"
     " 1111"
 )
-TYPES = {"Float64": "<f8", "Int64": "<i8", "UInt8": "u1"}
+TYPES = {"Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "u1", "UInt16": "<u2"}
 
 
 def wavy(points: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ edge or face in the same order, and no orientation has to be kept anywhere.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb
@@ -222,12 +222,22 @@ class ControlNet:
 
     def elevated(self, controls: Floats, source: ControlNet) -> Floats:
         """The controls here (c, ...) of the field that has the given ones on a lower net."""
-        raised = np.empty((self.count, *controls.shape[1:]))
+        by = self.degree - source.degree
+        return self.formed(lambda dim: bernstein.elevation(source.degree, dim, by), controls, source)
+
+    def formed(
+        self, form: Callable[[int], Floats], controls: Floats, source: ControlNet
+    ) -> Floats:
+        """What matrices make of controls on another net of the mesh (c, ...), each row once.
+
+        form(dim) (m, m') takes the source's controls on a simplex of that dimension to what stands
+        there in place of ours; of its rows those inside the simplex are used.
+        """
+        made = np.empty((self.count, *controls.shape[1:]))
         for dim, numbers, own in self._runs():
-            matrix = bernstein.elevation(source.degree, dim, self.degree - source.degree)
-            rows = matrix[inside(self.degree, dim)]
-            raised[own] = rows_applied(rows, controls, source.closure(dim, numbers))
-        return raised
+            rows = form(dim)[inside(self.degree, dim)]
+            made[own] = rows_applied(rows, controls, source.closure(dim, numbers))
+        return made
 
     def _dims(self, dim: int) -> range:
         """The dimensions up to dim whose entities hold controls inside."""

@@ -199,8 +199,15 @@ class TetMesh:
         >>> mesh.oriented_tets.tolist()
         [[0, 1, 3, 2]]
         """
-        turned = determinants(self.points[self.tets]) < 0
-        return np.where(turned[:, None], self.tets[:, [0, 1, 3, 2]], self.tets)
+        return np.where(self.left_handed[:, None], self.tets[:, [0, 1, 3, 2]], self.tets)
+
+    @property
+    def left_handed(self) -> Bools:
+        """Whether det[p1 - p0, p2 - p0, p3 - p0] < 0, (t,)."""
+        found = np.empty(len(self.tets), bool)
+        for part in slices(len(found)):
+            found[part] = determinants(self.points[self.tets[part]]) < 0
+        return found
 
     @property
     def box(self) -> Floats:

@@ -8,8 +8,9 @@ to that degree. Neither loses anything as long as the degree is not below the fi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -20,6 +21,7 @@ from bezsoma.bernstein import domain_points, elevation, interpolation, values
 from bezsoma.errors import InputError, unknown
 from bezsoma.mesh import BrokenField, ControlNet, Field, TetMesh
 from bezsoma.mesh.nouns import described, field_given, mesh_given, path_given
+from bezsoma.mesh.topology import slices
 from bezsoma.view.lagrange import vtk_order
 from bezsoma.view.lattice import shared_points
 from bezsoma.view.restriction import (
@@ -36,6 +38,8 @@ _CELL_TYPES = {"lagrange": {2: 69, 3: 71}, "bezier": {2: 76, 3: 78}}
 """VTK's numbers of the triangle and the tetrahedron of each kind."""
 _PLAIN = {2: 5, 3: 10}
 """Those of degree 1, which every program knows."""
+_Points = tuple[Floats, dict[str, Numbers], Callable[[slice], Ints]]
+"""Points (c, 3) in mm, what they bear by name, and the numbers (q, m) of some elements' points."""
 _NOTICE = "Research software, not a medical device."
 
 
@@ -44,17 +48,19 @@ class Grid:
     """An unstructured grid of cells of one type: points in mm, and data by name."""
 
     points: Floats
-    cells: Ints
-    """(e, m) point numbers in VTK's order."""
+    cells: Numbers
+    """(e, m) point numbers in VTK's order, whole numbers."""
     cell_type: int
     point_data: Mapping[str, Numbers]
     cell_data: Mapping[str, Numbers]
     metadata: Mapping[str, Any]
 
     @property
-    def offsets(self) -> Ints:
+    def offsets(self) -> Numbers:
         """Where each cell begins (e + 1,) in the list of all cells' points, and where it ends."""
-        return np.asarray(np.arange(len(self.cells) + 1) * self.cells.shape[1])
+        size = self.cells.shape[1]
+        kind = np.int32 if self.cells.size < 2**31 else np.int64
+        return np.arange(0, (len(self.cells) + 1) * size, size, dtype=kind)
 
     @property
     def types(self) -> Numbers:
@@ -74,22 +80,46 @@ def mesh_grid(
     """The grid of a mesh and fields on it; `call` is what the user wrote, for messages."""
     fields = _checked(call, path, mesh, given, kind)
     chosen = _degree(mesh, fields, degree)
-    if any(not isinstance(field, Field) for field in fields.values()):
-        size = len(domain_points(chosen, 3))
-        of_tet = np.arange(len(mesh.tets) * size).reshape(-1, size)
+    continuous = {name: field for name, field in fields.items() if isinstance(field, Field)}
+    if len(continuous) == len(fields):
+        points, data, of_tet = _shared(kind, mesh, continuous, chosen)
     else:
-        of_tet = ControlNet(mesh, chosen).of_tet
-    a, b, c = (mesh.points[mesh.tets[:, i]] - mesh.points[mesh.tets[:, 0]] for i in (1, 2, 3))
-    mirrored = np.einsum("td,td->t", a, np.cross(b, c)) < 0
-    controls = {name: field.of_tet for name, field in fields.items()}
+        points, data, of_tet = _tet_by_tet(kind, mesh, fields, chosen)
     return Grid(
-        _gathered(domain_points(chosen, 3) @ mesh.points[mesh.tets], of_tet),
-        _cells(of_tet, chosen, 3, mirrored),
+        points,
+        _cells(of_tet, len(points), chosen, 3, mesh.left_handed),
         _PLAIN[3] if chosen == 1 else _CELL_TYPES[kind][3],
-        _data(kind, fields, controls, chosen, 3, of_tet),
-        {"region": mesh.region},
+        data,
+        {"region": mesh.region.astype(np.min_scalar_type(len(mesh.regions)))},
         _metadata(kind, chosen, metadata, regions=list(mesh.regions)),
     )
+
+
+def _shared(kind: Cells, mesh: TetMesh, fields: Mapping[str, Field], chosen: int) -> _Points:
+    """Points that neighbours share, one a control: each is evaluated once."""
+    nets = [field.net for field in fields.values() if field.degree == chosen]
+    net = nets[0] if nets else ControlNet(mesh, chosen)
+    data = {
+        name: net.formed(
+            partial(written_form, kind, field.degree, chosen),
+            field.controls.reshape(len(field.controls), -1),
+            field.net,
+        )
+        for name, field in fields.items()
+    }
+    return net.points, data, lambda part: net.closure(3, part)
+
+
+def _tet_by_tet(
+    kind: Cells, mesh: TetMesh, fields: Mapping[str, AnyField], chosen: int
+) -> _Points:
+    """Points of each tet's own."""
+    lattice = domain_points(chosen, 3)
+    of_tet = np.arange(len(mesh.tets) * len(lattice)).reshape(-1, len(lattice))
+    controls = {name: field.of_tet for name, field in fields.items()}
+    data = _data(kind, fields, controls, chosen, 3, of_tet)
+    points = _gathered(lattice @ mesh.points[mesh.tets], of_tet)
+    return points, data, lambda part: of_tet[part]
 
 
 def surface_grid(
@@ -114,7 +144,7 @@ def surface_grid(
     controls = {name: controls_on(mesh, field, facets) for name, field in fields.items()}
     return Grid(
         _gathered(domain_points(chosen, 2) @ mesh.points[facets], of_facet),
-        _cells(of_facet, chosen, 2, mirrored),
+        _cells(lambda part: of_facet[part], of_facet.size, chosen, 2, mirrored),
         _PLAIN[2] if chosen == 1 else _CELL_TYPES[kind][2],
         _data(kind, fields, controls, chosen, 2, of_facet),
         {},
@@ -193,10 +223,18 @@ def _gathered(of_element: Floats, numbers: Ints) -> Floats:
     return found
 
 
-def _cells(numbers: Ints, degree: int, dim: int, mirrored: Bools) -> Ints:
+def _cells(
+    of_element: Callable[[slice], Ints], points: int, degree: int, dim: int, mirrored: Bools
+) -> Numbers:
     """Point numbers (e, m) in VTK's order, every cell right-handed (a surface: outwards)."""
-    plain, other = (numbers[:, vtk_order(degree, dim, flip)] for flip in (False, True))
-    return np.where(mirrored[:, None], other, plain)
+    plain, other = (vtk_order(degree, dim, flip) for flip in (False, True))
+    kind = np.int32 if points < 2**31 else np.int64
+    cells = np.empty((len(mirrored), len(plain)), kind)
+    for part in slices(len(cells)):
+        numbers, turned = of_element(part), mirrored[part]
+        cells[part] = numbers[:, plain]
+        cells[part][turned] = numbers[turned][:, other]
+    return cells
 
 
 def _metadata(

@@ -21,8 +21,15 @@ from bezsoma.mesh import TetMesh
 from bezsoma.view.grid import Cells, Fields, Grid, mesh_grid, surface_grid
 from bezsoma.view.written import written
 
-_TYPES = {"f8": "Float64", "i8": "Int64", "u1": "UInt8"}
+_TYPES = {
+    "f8": "Float64", "i4": "Int32", "i8": "Int64",
+    "u1": "UInt8", "u2": "UInt16", "u4": "UInt32",
+}  # fmt: skip
 _BLOCK = 1 << 20
+_SAMPLE = 1 << 15
+_SHRINKS = 0.8
+"""Blocks of whose beginning more than this part is left are stored as they are: the digits of most
+coordinates and displacements hardly shrink, and took longer than all else."""
 _COMPONENTS = {1: ("",), 3: ("X", "Y", "Z"), 9: tuple(a + b for a in "XYZ" for b in "XYZ")}
 
 
@@ -115,7 +122,7 @@ def _document(grid: Grid) -> bytes:
 
 def _array(name: str, array: Numbers, tuples: bool = False) -> str:
     """One DataArray element; `tuples` states their number, which field data needs."""
-    kind = {"f": "f8", "i": "i8", "u": "u1"}[array.dtype.kind]
+    kind = "f8" if array.dtype.kind == "f" else array.dtype.str[1:]
     content = np.ascontiguousarray(array, dtype=f"<{kind}")
     components = content.shape[1] if content.ndim == 2 else 1
     labels = "".join(
@@ -128,21 +135,33 @@ def _array(name: str, array: Numbers, tuples: bool = False) -> str:
     return (
         f'<DataArray type="{_TYPES[kind]}" Name={quoteattr(name)}{parts}{labels}{number}'
         f' format="binary">'
-        f"{_encoded(content.tobytes())}</DataArray>"
+        f"{_encoded(content.reshape(-1).view(np.uint8).data)}</DataArray>"
     )
 
 
-def _encoded(raw: bytes) -> str:
+def _encoded(raw: bytes | memoryview) -> str:
     """VTK's inline form: base64 of [blocks, block size, last size, sizes], then of the blocks.
 
     >>> text = _encoded(b"abc")
     >>> np.frombuffer(base64.b64decode(text[:44]), "<u8").tolist(), text[44:48]
-    ([1, 1048576, 3, 11], 'eAFL')
+    ([1, 1048576, 3, 14], 'eAEB')
     >>> zlib.decompress(base64.b64decode(text[44:]))
     b'abc'
     """
     blocks = [raw[i : i + _BLOCK] for i in range(0, len(raw), _BLOCK)]
-    packed = [zlib.compress(block, 1) for block in blocks]
+    packed = [_packed(block) for block in blocks]
     last = len(raw) % _BLOCK
     header = np.array([len(blocks), _BLOCK, last, *map(len, packed)], "<u8")
     return (base64.b64encode(header.tobytes()) + base64.b64encode(b"".join(packed))).decode()
+
+
+def _packed(block: bytes | memoryview) -> bytes:
+    """A block as zlib has it; stored where it would hardly shrink.
+
+    >>> digits = np.random.default_rng(1).random(10_000).tobytes()
+    >>> len(_packed(digits)) > 80_000 > 400 > len(_packed(bytes(80_000)))
+    True
+    """
+    sample = block[:_SAMPLE]
+    shrinks = len(zlib.compress(sample, 1)) <= _SHRINKS * len(sample)
+    return zlib.compress(block, 1 if shrinks else 0)
