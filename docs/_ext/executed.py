@@ -79,9 +79,10 @@ def show(app: Sphinx, name: str, source: list[str]) -> None:
 def dressed(block: re.Match[str], said: str) -> str:
     """A block with the name of its file above it, and what it printed below."""
     language, words, text = block.groups()
-    named = words and words != "refused"
-    caption = f":caption: {words.removeprefix('+ ')}\n\n" if named else ""
-    code = f"```{{code-block}} {language}\n{caption}{text}```"
+    code = f"```{language}\n{text}```"
+    if words and words != "refused":
+        caption = words.removeprefix("+ ")
+        code = f"```{{code-block}} {language}\n:caption: {caption}\n\n{text}```"
     if not said:
         return code
     return f"{code}\n\n```{{code-block}} text\n:class: said\n\n{said.rstrip()}\n```"
