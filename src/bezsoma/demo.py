@@ -7,7 +7,7 @@ and `bezsoma run` do.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -15,7 +15,7 @@ from bezsoma.case.reading import read_case
 from bezsoma.case.running import Progress, run_case, silent
 from bezsoma.errors import InputError
 from bezsoma.imaging.around import head_around
-from bezsoma.imaging.domain import domain
+from bezsoma.imaging.domain import DomainSettings, domain
 from bezsoma.imaging.head_ct import head_ct
 from bezsoma.imaging.nrrd import write_volume
 from bezsoma.imaging.settings import LabelSettings
@@ -32,17 +32,23 @@ OURS = {CT, MODEL, PREDICTION, HEAD}
 
 @dataclass(frozen=True)
 class Head:
-    """How fine a demo is: voxels in mm, tets, and the gap in mm of joints and teeth.
+    """How fine a demo is: voxels in mm, tets, the gap in mm of joints and teeth, and the domain.
 
-    A gap under a voxel would join mandible and skull.
+    A gap under a voxel would join mandible and skull; cells wider than the flesh under the skin
+    would leave holes in it, so few tets have to do with less of the face.
     """
 
     voxel: float
     tets: int
     gap: float
+    domain: DomainSettings = field(default_factory=DomainSettings)
 
 
-HEADS = {"small": Head(2.0, 20_000, 3.0), "large": Head(1.5, 60_000, 2.5)}
+LOWER_FACE = DomainSettings(above=-8.0, behind=-20.0)
+"""Ends below the joints and in front of the hind borders of the rami."""
+
+
+HEADS = {"small": Head(2.0, 24_000, 3.0, LOWER_FACE), "large": Head(1.5, 60_000, 2.5)}
 
 
 def run_demo(
@@ -66,7 +72,9 @@ def run_demo(
     ct = head_ct((head.voxel,) * 3, joint=head.gap, bite=head.gap).volume
     write_volume(place / CT, ct.values, ct.frame, overwrite=True)
     wide = LabelSettings(coarse=head.voxel)  # its joints are wide enough for voxels as they are
-    settings = ModelSettings(labels=wide, tets=head.tets, degree=degree, forward=6.0)
+    settings = ModelSettings(
+        labels=wide, domain=head.domain, tets=head.tets, degree=degree, forward=6.0
+    )
     model = run_model(place / CT, place / MODEL, settings, overwrite=overwrite, progress=progress)
     case = read_case(model.case)
     results = run_case(case, place / PREDICTION, overwrite=overwrite, progress=progress)

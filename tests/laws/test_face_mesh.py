@@ -160,7 +160,7 @@ def test_sizes_grow_from_the_segment(part: Domain, made: FaceMesh) -> None:
 def test_about_as_many_tets_as_asked_for(part: Domain) -> None:
     sizes = sizes_for(part, 12_000, Sizes(layer=0.9))
     assert sizes.skin / sizes.segment == pytest.approx(Sizes().skin / Sizes().segment)
-    assert 8_000 < len(face_mesh(part, sizes).mesh.tets) < 17_000
+    assert len(face_mesh(part, sizes).mesh.tets) == pytest.approx(12_000, rel=0.1)
 
 
 def test_a_known_block_of_labels_keeps_its_volume() -> None:
