@@ -146,7 +146,7 @@ def demo(
     *,
     size: Annotated[
         Literal["small", "large"],
-        Parameter(help="how fine the CT and the mesh are; small takes half a minute"),
+        Parameter(help="how fine the CT and the mesh are; small takes a minute"),
     ] = "large",
     degree: Annotated[int, Parameter(help="the degree of the displacement")] = 3,
     output: Annotated[

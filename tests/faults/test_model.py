@@ -10,9 +10,12 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
+
+import dicom_files as dicom
 
 pytest.importorskip("SimpleITK", reason="comes with the extra 'imaging'")
 
@@ -189,6 +192,28 @@ def test_a_stopped_run_goes_on_and_gives_the_same_bits(
     (whole / "mesh.npz").unlink()
     assert run_model(ct, whole, COARSE).kept == ("labels", "case")
     assert contents(halted) == contents(whole)
+
+
+def test_no_file_of_a_model_says_who_it_is(tmp_path: Path, fast: pytest.MonkeyPatch) -> None:
+    """Name, number, birthday and identifiers of the DICOM files, also from their folder's name."""
+    volume = head_ct((3, 3, 3), joint=5, noise=0).volume
+    series = [
+        dicom.Slice(
+            plane + 1024, volume.frame.points(np.array([0, 0, k])), spacing=(3, 3),
+            changes={(0x0008, 0x103E): "head of Doe"},
+        )
+        for k, plane in enumerate(volume.values)
+    ]  # fmt: skip
+    folder = dicom.written(tmp_path / "Doe^Jane 4711", series)
+    assert b"Doe^Jane" in (folder / "IM0000").read_bytes()
+    run_model(folder, tmp_path / "m", COARSE)
+    for path in (tmp_path / "m").iterdir():
+        content = path.read_bytes()
+        if path.suffix == ".npz":
+            with ZipFile(path) as archive:
+                content += b"".join(archive.read(name) for name in archive.namelist())
+        for word in (b"Doe", b"Jane", b"4711", b"19700101", b"1.2.3.4"):
+            assert word not in content, f"{word!r} in {path.name}"
 
 
 def test_a_full_disk_leaves_the_stages_before_it(

@@ -150,11 +150,15 @@ def test_an_open_mouth_has_mucosa() -> None:
 
 
 def test_sizes_grow_from_the_segment(part: Domain, made: FaceMesh) -> None:
+    """Far from the segment tets are larger, by as much as sizes wanted there are."""
     mesh = made.mesh
-    edge = np.cbrt(12 * mesh.volumes)
-    away = part.at(part.to_segment, mesh.points[mesh.tets].mean(axis=1))
-    near, far = np.median(edge[away < 4]), np.median(edge[away > 25])
-    assert far > 1.4 * near and near < 1.4 * COARSE.segment
+    middle = mesh.points[mesh.tets].mean(axis=1)
+    edge, wanted = np.cbrt(12 * mesh.volumes), COARSE.wanted(part, middle)
+    away = part.at(part.to_segment, middle)
+    near, far = (np.median(edge[which]) for which in (away < 4, away > 25))
+    asked = np.median(wanted[away > 25]) / np.median(wanted[away < 4])
+    assert asked > 1.3 and far / near == pytest.approx(asked, rel=0.15)
+    assert 0.5 < near / COARSE.segment < 1.4
 
 
 def test_about_as_many_tets_as_asked_for(part: Domain) -> None:
@@ -176,8 +180,9 @@ def test_a_known_block_of_labels_keeps_its_volume() -> None:
     voxels = (values == SOFT).sum() * 4.5
     assert mesh.volumes.sum() == pytest.approx(voxels, rel=TISSUE_VOLUME)
     assert set(mesh.surfaces) == {"skin", "skull", "mandible"}
-    jaw = mesh.points[mesh.vertices_of("mandible")]
-    assert np.abs(jaw.mean(axis=0) - [44.25, 44.25, 25]).max() < 0.5
+    jaw = mesh.surfaces["mandible"]
+    middle = np.average(mesh.points[jaw].mean(axis=1), axis=0, weights=mesh.areas(jaw))
+    assert np.abs(middle - [44.25, 44.25, 25]).max() < 0.5
 
 
 def test_landmarks_lie_on_the_skin_in_order(found: Labels, made: FaceMesh) -> None:
