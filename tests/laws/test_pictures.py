@@ -23,6 +23,7 @@ from bezsoma.view.layout import Layout
 from bezsoma.view.rays import Scene
 from bezsoma.view.shading import Layer, coverage, openness, shaded
 from bezsoma.view.sheet import colours
+from bezsoma.view.shot import bar
 from bezsoma.view.subject import Subject
 from bezsoma.view.surfaces import Surface, displaced
 from tolerances import ROUNDING
@@ -359,6 +360,11 @@ def test_colours_on_the_surface_are_those_of_the_table() -> None:
     nearest = (hue(inside)[:, None] @ hue(table).T)[:, 0].argmax(axis=1)
     steady = nearest[np.abs(np.gradient(nearest.astype(float))) < 30]
     assert (np.diff(steady) <= 12).all() and steady[0] > steady[-1] + 80
+
+
+def test_a_bar_begins_at_zero_where_its_range_begins_within_half_a_colour_of_it() -> None:
+    for low, shown in ((8e-4, 0.0), (3e-3, 3e-3), (-8e-4, -8e-4)):
+        assert bar(np.array([low, 0.5, 1.0]), "mm", None, "viridis").limits == (shown, 1.0)
 
 
 def test_a_constant_field_has_a_bar_too() -> None:

@@ -170,7 +170,7 @@ def vector_estimate(
 
 
 def _axes(place: Goal) -> tuple[Goal, Goal, Goal]:
-    x, y, z = (replace(place, direction=axis) for axis in "xyz")
+    x, y, z = (replace(place, direction=axis) for axis in np.eye(3))
     return x, y, z
 
 

@@ -27,8 +27,8 @@ from bezsoma.view.sheet import Bar, Panel, Strokes, colours, round_levels
 from bezsoma.view.subject import Named, Subject, is_skin
 from bezsoma.view.surfaces import Surface, displaced
 
-_NOTHING = 1e-6
-"""A range that begins this near zero, relative to its end, begins at zero."""
+_NOTHING = 1 / 512
+"""A range that begins this near zero, relative to its end, begins at zero: half a colour of 256."""
 _VEIL = 0.38
 """How much of what is seen through a translucent surface is that surface."""
 

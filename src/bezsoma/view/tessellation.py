@@ -182,7 +182,7 @@ def _parts_of_length(corners: Floats, longest: float) -> Ints:
     """Into how many parts (f, 3) edges are cut for none to be longer; as many as there may be."""
     ends = corners[:, np.array(SIDES)]
     wanted = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2) / longest
-    return np.array(STEPS)[np.searchsorted(STEPS[:-1], wanted * (1 - 1e-12))]
+    return np.asarray(np.array(STEPS)[np.searchsorted(STEPS[:-1], wanted * (1 - 1e-12))])
 
 
 @dataclass(frozen=True, eq=False)
