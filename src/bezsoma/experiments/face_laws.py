@@ -125,8 +125,8 @@ def told(tables: Tables) -> Report:
         "\n".join(said),
         "For 5 mm the paper is right: the law hardly shows. For 10 mm the lips show it, and a "
         "planner who opens a jaw needs a law at finite strain. Stiffening is the deviatoric "
-        "measure here: the paper's own (Frobenius), moved by 5 mm, comes as far as 75 % of the "
-        "motion, where it loses strong ellipticity in one tet beside the band between jaw and "
+        "measure here: the paper's own (Frobenius), moved by 5 mm, comes as far as 87.5 % of the "
+        "motion, where it has lost strong ellipticity in five tets beside the band between jaw and "
         "rami, and the error says so. docs/verification/face_laws.md has components too.",
         tables,
         {},
