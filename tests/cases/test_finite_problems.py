@@ -19,7 +19,8 @@ def test_beam_of_heart_muscle() -> None:
     """S. Land et al., Proc. R. Soc. A 471 (2015), doi:10.1098/rspa.2015.0641, problem 1.
 
     10 x 1 x 1 mm, Guccione, incompressible, a pressure of 4 Pa that follows from below; the codes
-    there put the middle of the end's upper edge at z = 4.17 +- 0.02 mm.
+    there put the middle of the end's upper edge at z = 4.17 +- 0.02 mm. On these 96 tets it is at
+    4.143, 4.156 and 4.161 mm at degrees 3, 4 and 5.
     """
     mesh = bz.block(size=(10.0, 1.0, 1.0), cells=(16, 1, 1))
     muscle = bz.Guccione(C=2.0, bf=8.0, bt=2.0, bfs=4.0, kappa=np.inf, fibre=(1, 0, 0))

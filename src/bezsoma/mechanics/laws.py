@@ -191,7 +191,10 @@ class FunctionLaw:
         """The change of the function in the direction dH, without the volume's."""
         if callable(self.slope):
             return self._asked("derivative", self.slope, H, dH)
-        stress = lambda H: self._asked("stress", self.function, H)  # noqa: E731
+
+        def stress(H: Floats) -> Floats:
+            return self._asked("stress", self.function, H)
+
         if self.slope == "complex step":
             return np.asarray(stress(H + 1j * COMPLEX_STEP * dH).imag / COMPLEX_STEP)
         size = np.sqrt((dH**2).sum(axis=(-2, -1), keepdims=True))
