@@ -273,8 +273,8 @@ LAW = (
         ),
         (
             "half the second term of Veronda and Westmann in the stress",
-            "zero - par[1] * par[2] / 2)",
-            "zero - par[1] * par[2] / 4)",
+            "{ return -par[1] * par[2] / 2; }",
+            "{ return -par[1] * par[2] / 4; }",
         ),
         (
             "twice the volume's energy of the neo-Hookean law",
@@ -289,13 +289,13 @@ LAW = (
         ),
         (
             "shears counted once in Guccione's exponent",
-            "Q += E[c] * half[c] * T(c < 3 ? 1 : 2);",
-            "Q += E[c] * half[c] * T(c < 3 ? 1 : 1);",
+            "return normal + 2 * shear;",
+            "return normal + shear;",
         ),
         (
             "half of what turns with the frame",
-            "two * (x.j + T(1)) * T(2)}",
-            "two * (x.j + T(1))}",
+            "            turned};",
+            "            turned * T(0.5)};",
         ),
     ),
     *errors_in(
@@ -341,8 +341,8 @@ LAW = (
         LAWS,
         (
             "half the change of 1/lambda^2",
-            "m[a][a] = -2 * x.b[a] * dlog[a] * per_c[a];",
-            "m[a][a] = -1 * x.b[a] * dlog[a] * per_c[a];",
+            "- 2 * b[a] * dlog[a])",
+            "- b[a] * dlog[a])",
         ),
         (
             "Ogden's energy without its exponent below",
