@@ -518,6 +518,10 @@ private:
 
 NB_MODULE(_core, m) {
     using namespace nb::literals;
+    // Whoever still holds an object when Python ends (a thread, a cache of another package, the
+    // frame of an error that was kept) is told of a leak otherwise, in words that help no user.
+    // What is held then goes with the process.
+    nb::set_leak_warnings(false);
     m.doc() = "BezSoma's kernels over flat arrays";
     m.def("element_matrices", &element_matrices, "degree"_a, "gradients"_a, "volumes"_a, "lam"_a,
           "mu"_a);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "formed_shapes.hpp"
+
 namespace bezsoma {
 
 namespace {
@@ -14,6 +16,11 @@ namespace {
 constexpr std::int64_t most_controls = 12000, least_controls = 1500, shares = 64;
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
+
+/// Where a chunk's own points begin among (foreign, own) of all chunks.
+std::int64_t first_point(const Chunk &chunk) {
+    return 3 * (chunk.control + chunk.foreign_begin + chunk.foreign);
+}
 
 } // namespace
 
@@ -50,6 +57,7 @@ ElasticOperator<T>::ElasticOperator(const ElasticTets &tets, const Kernels &kern
     : team_(team),
       chunks_(bezsoma::chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets), team)),
       lame_(tets.lame, tets.lame + 2 * tets.regions), scratch_(team.size()) {
+    lame_.resize(lame_.size() + 2);
     if constexpr (sizeof(T) == 8) {
         kernel_ = kernels.f64[tets.degree - 1];
         lanes_ = kernels.lanes64;
@@ -68,7 +76,11 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
     first_.resize(size(batch_.back() * per_tet * lanes_));
     region_.resize(size(batch_.back() * lanes_));
     met_.resize(size(batch_.back()));
-    geometry_.resize(size(batch_.back() * 9 * lanes_));
+    if (forms_shapes<T>(tets.degree)) {
+        points_.resize(size(3 * (chunks_.controls + chunks_.foreign)) + padding);
+    } else {
+        geometry_.resize(size(batch_.back() * 9 * lanes_));
+    }
     team_.run(chunks_.parts.size(), [&](std::size_t c, std::size_t) {
         const Chunk &chunk = chunks_.parts[c];
         std::int32_t met = 0;
@@ -85,17 +97,35 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
                     met = std::max(met, local + controls_inside(tets.degree, static_cast<int>(e)));
             }
             met_[size(batch)] = met;
-            region_[size(batch * lanes_ + lane)] = tets.region(tet);
-            if (i >= chunk.tets)
-                continue; // a lane too many: the last tet again, without volume, adds nothing
-            const TetShape shape = tets.shape(tet);
-            const double root = std::sqrt(shape.volume);
-            for (std::int64_t k = 0; k < 9; ++k)
-                geometry_[size((batch * 9 + k) * lanes_ + lane)] =
-                    static_cast<T>(root * shape.gradients[1 + k / 3][k % 3]);
+            // A lane too many: the last tet again, without stiffness, adds nothing.
+            region_[size(batch * lanes_ + lane)] = i < chunk.tets ? tets.region(tet) : tets.regions;
+            if (forms_shapes<T>(tets.degree))
+                keep_points(tets, chunk, tet);
+            else
+                keep_shape(tets.shape(tet), geometry_.data() + batch * 9 * lanes_ + lane);
         }
     });
     std::vector<std::int32_t>().swap(chunks_.local);
+}
+
+template <class T> void ElasticOperator<T>::keep_shape(const TetShape &shape, T *geometry) const {
+    const double root = std::sqrt(shape.volume);
+    for (std::int64_t k = 0; k < 9; ++k)
+        geometry[k * lanes_] = static_cast<T>(root * shape.gradients[1 + k / 3][k % 3]);
+}
+
+/// At degree 1, where controls are points.
+template <class T>
+void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk,
+                                     std::int64_t tet) {
+    for (std::int64_t v = 0; v < 4; ++v) {
+        const std::int64_t local = chunks_.local[size(4 * tet + v)];
+        const double *from = tets.points + 3 * tets.corners[4 * tets.order[tet] + v];
+        T *to = points_.data() + first_point(chunk) +
+                3 * (local < chunk.owned ? local : local - chunk.owned - chunk.foreign);
+        for (int k = 0; k < 3; ++k)
+            to[k] = static_cast<T>(from[k]);
+    }
 }
 
 template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
@@ -114,9 +144,12 @@ template <class T> int ElasticOperator<T>::width(int sides) const {
 
 template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
     const std::int64_t b = batch_[c], per_tet = entities_of_tet(chunks_.degree);
+    const T *shapes = forms_shapes<T>(chunks_.degree)
+                          ? points_.data() + first_point(chunks_.parts[c])
+                          : geometry_.data() + b * 9 * lanes_;
     return {.count = batch_[c + 1] - b,
             .first = first_.data() + b * per_tet * lanes_,
-            .geometry = geometry_.data() + b * 9 * lanes_,
+            .geometry = shapes,
             .region = region_.data() + b * lanes_,
             .met = met_.data() + b,
             .lame = lame_.data(),

@@ -44,7 +44,8 @@ std::int64_t controls_of_chunk(const ElasticTets &tets);
 
 /// K u without a matrix, in float64 or float32, on one or several right-hand sides.
 ///
-/// Per tet it keeps 9 numbers of geometry, 4 to 15 of where its controls lie and its region.
+/// Per tet it keeps 9 numbers of geometry, 4 to 15 of where its controls lie and its region; at
+/// degree 1 the points in place of the geometry (`forms_shapes`).
 template <class T> class ElasticOperator {
 public:
     ElasticOperator(const ElasticTets &tets, const Kernels &kernels, Team &team);
@@ -62,6 +63,8 @@ public:
 private:
     int width(int sides) const;
     void pack(const ElasticTets &tets);
+    void keep_shape(const TetShape &shape, T *geometry) const;
+    void keep_points(const ElasticTets &tets, const Chunk &chunk, std::int64_t tet);
     Batches<T> batches(std::size_t chunk) const;
     T *foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const;
     bool in_place(const Chunk &chunk, int sides) const;
@@ -76,8 +79,9 @@ private:
     std::vector<std::int32_t> first_;     // (batches, entities, lanes)
     std::vector<std::int32_t> region_;    // (batches, lanes)
     std::vector<std::int32_t> met_;       // (batches,) own controls met until the end of each
-    std::vector<T> geometry_;             // (batches, 9, lanes)
-    std::vector<T> lame_;                 // (regions, 2)
+    std::vector<T> geometry_;             // (batches, 9, lanes), or none
+    std::vector<T> points_;               // of each chunk foreign, own (controls, 3), or none
+    std::vector<T> lame_;                 // (regions + 1, 2), the last row zero
     std::vector<T> foreign_;              // (foreign controls, 3, sides)
     std::vector<std::vector<T>> scratch_; // a thread each
 };

@@ -10,8 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "tet_controls.hpp"
+#include "vertex_reach.hpp"
 
 namespace bezsoma {
 
@@ -61,6 +63,24 @@ std::vector<double> couplings(int degree, int dim) {
                         product *= choose(x[v] + y[v], x[v]);
                     c.push_back(product);
                 }
+    return c;
+}
+
+/// c_ij of the function of vertex 0: (1/V) int psi_i psi_j, where grad psi = n sum_i psi_i g_i.
+std::array<double, 16> couplings_of_vertex(int degree) {
+    const double scale = choose(2 * degree - 2, degree - 1) * choose(2 * degree + 1, 3);
+    const VertexReach reach = vertex_reach(degree);
+    std::vector<std::pair<Index, double>> parts{{Index{degree}, 1.0}};
+    for (int j = 1; j < degree; ++j)
+        for (std::size_t k = 1; k < 4; ++k) {
+            parts.emplace_back(Index{degree - j}, reach.of[j]);
+            parts.back().first[k] = j;
+        }
+    std::array<double, 16> c{};
+    for (const auto &[a, s] : parts)
+        for (const auto &[b, t] : parts)
+            for (int ij = 0; ij < 16; ++ij)
+                c[size(ij)] += s * t * lowered_product(a.data(), ij / 4, b.data(), ij % 4) / scale;
     return c;
 }
 
@@ -162,10 +182,30 @@ void pack(Dense &block, const std::uint8_t *fixed, float *to) {
 } // namespace
 
 EntityBlocks::EntityBlocks(const ElasticTets &tets, const Entities &entities)
-    : tets_(tets), entities_(entities), rows_{} {
+    : tets_(tets), entities_(entities), of_vertex_{}, rows_{} {
+    of_vertex_ = couplings_of_vertex(tets.degree);
     for (int dim = 0; dim < 4; ++dim) {
         couplings_[size(dim)] = couplings(tets.degree, dim);
         rows_[size(dim)] = 3 * indices_inside(tets.degree, dim).size();
+    }
+}
+
+/// n^2 V sum_ij c_ij (lambda g_i g_j^T + mu g_j g_i^T + mu g_i.g_j I) of all tets at a vertex, (3, 3).
+void EntityBlocks::sum_around_vertex(std::size_t e, double *q) const {
+    std::fill_n(q, 9, 0.0);
+    for (auto t = size(entities_.start[e]); t < size(entities_.start[e + 1]); ++t) {
+        const std::int64_t tet = entities_.around[t];
+        TetShape shape = tets_.shape(tet);
+        std::swap(shape.gradients[0], shape.gradients[entities_.local[t]]);
+        double g[9] = {};
+        for (std::size_t ij = 0; ij < 16; ++ij)
+            for (std::size_t k = 0; k < 9; ++k)
+                g[k] += of_vertex_[ij] * shape.gradients[ij / 4][k / 3] *
+                        shape.gradients[ij % 4][k % 3];
+        const double scale = tets_.degree * tets_.degree * shape.volume;
+        const double lambda = scale * tets_.lambda(tet), mu = scale * tets_.mu(tet);
+        for (std::size_t k = 0; k < 9; ++k)
+            q[k] += (lambda + mu) * g[k] + (k % 4 == 0 ? mu * (g[0] + g[4] + g[8]) : 0.0);
     }
 }
 
@@ -176,9 +216,14 @@ void EntityBlocks::inverse(std::size_t e, const std::uint8_t *fixed, std::vector
     if (scratch.size() < n * n)
         scratch.resize(n * n);
     double q[16 * 9];
-    sum_tets(tets_, entities_, e, q);
     Dense block{n, scratch.data()};
-    fill(block, couplings_[size(entity.dim)], q, entity.dim + 1);
+    if (entity.dim == 0) {
+        sum_around_vertex(e, q);
+        std::copy_n(q, 9, block.a);
+    } else {
+        sum_tets(tets_, entities_, e, q);
+        fill(block, couplings_[size(entity.dim)], q, entity.dim + 1);
+    }
     const std::uint8_t *own = fixed + 3 * size(entity.control);
     take_out(block, own);
     invert(block);

@@ -11,7 +11,8 @@
 
 namespace bezsoma {
 
-/// The inverse of the diagonal block of K that belongs to one entity.
+/// The inverse of the diagonal block of K that belongs to one entity; for a vertex, of the block of
+/// its function that reaches along the edges (vertex_reach.hpp).
 class EntityBlocks {
 public:
     EntityBlocks(const ElasticTets &tets, const Entities &entities);
@@ -27,7 +28,10 @@ public:
 private:
     const ElasticTets &tets_;
     const Entities &entities_;
+    void sum_around_vertex(std::size_t entity, double *q) const;
+
     std::array<std::vector<double>, 4> couplings_;
+    std::array<double, 16> of_vertex_; // couplings of a vertex' function, by vertices of the tet
     std::array<std::size_t, 4> rows_;
 };
 

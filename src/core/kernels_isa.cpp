@@ -8,17 +8,45 @@
 
 #include "block_kernel.hpp"
 
+#include "formed_shapes.hpp"
+
 namespace bezsoma::BEZSOMA_ISA {
 
-/// What a batch holds of its tets.
+/// In place of what is kept: det grad L_i, i = 1..3, and the material over 6 |det|, which is V over the
+/// square of det. No root is needed, and one division.
 template <class T, int lanes>
+BEZSOMA_INLINE void form_shapes(const T *points, const std::int32_t *first, Batch<T, lanes> &tet) {
+    using R = Lanes<T, lanes>;
+    R x[12], edge[3][3];
+    Batches<T> places = {};
+    places.u = places.u_end = points;
+    gather<1, T, lanes>(places, first, x);
+    for (int k = 0; k < 9; ++k)
+        edge[k / 3][k % 3] = x[3 + k] - x[k % 3];
+    for (int e = 0; e < 3; ++e) { // det grad L_1 = (p2 - p0) x (p3 - p0) and cyclic
+        const R *b = edge[(e + 1) % 3], *c = edge[(e + 2) % 3];
+        for (int k = 0; k < 3; ++k)
+            tet.g[e][k] = b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3];
+    }
+    const R det = edge[0][0] * tet.g[0][0] + edge[0][1] * tet.g[0][1] + edge[0][2] * tet.g[0][2];
+    const R scale = T(1) / (T(6) * (det < R{} ? -det : det));
+    tet.lambda *= scale;
+    tet.mu *= scale;
+}
+
+/// What a batch holds of its tets.
+template <int n, class T, int lanes>
 BEZSOMA_INLINE Batch<T, lanes> batch_of_tets(const Batches<T> &b, std::int64_t i) {
     Batch<T, lanes> tet = {};
-    for (int k = 0; k < 9; ++k)
-        tet.g[k / 3][k % 3] = load<T, lanes>(b.geometry + (9 * i + k) * lanes);
     for (int l = 0; l < lanes; ++l) {
         tet.lambda[l] = b.lame[2 * b.region[i * lanes + l]];
         tet.mu[l] = b.lame[2 * b.region[i * lanes + l] + 1];
+    }
+    if constexpr (forms_shapes<T>(n)) {
+        form_shapes<T, lanes>(b.geometry, b.first + i * entities(1) * lanes, tet);
+    } else {
+        for (int k = 0; k < 9; ++k)
+            tet.g[k / 3][k % 3] = load<T, lanes>(b.geometry + (9 * i + k) * lanes);
     }
     return tet;
 }
@@ -37,7 +65,8 @@ template <int n, class T, int lanes> void apply(const Batches<T> &b) {
         clear(b, i, 3);
         gather<n, T, lanes>(b, first, u);
         const std::int64_t next = 3 * std::int64_t{b.met[i]};
-        elastic_forces<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u, f, {b.u + next, b.f + next});
+        elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), u, f,
+                                    {b.u + next, b.f + next});
         scatter<n, T, lanes>(b, first, f);
     }
 }
@@ -46,7 +75,7 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], sum = {};
     for (std::int64_t i = 0; i < b.count; ++i) {
         gather<n, T, lanes>(b, b.first + i * entities(n) * lanes, u);
-        sum += elastic_work<n, T, lanes>(batch_of_tets<T, lanes>(b, i), u,
+        sum += elastic_work<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), u,
                                          b.u + 3 * std::int64_t{b.met[i]});
     }
     double all = 0;
@@ -57,17 +86,21 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
 
 template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
     using R = Lanes<T, lanes>;
+    using Next = Ahead<n, T, lanes>;
+    constexpr std::int64_t called = Next::line * Next::lines * controls(n - 1);
     R u[3 * controls(n)], f[3 * controls(n)];
     for (std::int64_t i = 0; i < b.count; ++i) {
         clear(b, i, 3 * sides);
+        const Batch<T, lanes> all = batch_of_tets<n, T, lanes>(b, i);
         for (int lane = 0; lane < lanes; ++lane) {
             const std::int32_t *first = b.first + i * entities(n) * lanes;
             Batch<T, lanes> tet = {};
             for (int k = 0; k < 9; ++k)
-                tet.g[k / 3][k % 3] = R{} + b.geometry[(9 * i + k) * lanes + lane];
-            tet.lambda = R{} + b.lame[2 * b.region[i * lanes + lane]];
-            tet.mu = R{} + b.lame[2 * b.region[i * lanes + lane] + 1];
-            const std::int64_t next = 3 * std::int64_t{b.met[i]} * sides;
+                tet.g[k / 3][k % 3] = R{} + all.g[k / 3][k % 3][lane];
+            tet.lambda = R{} + all.lambda[lane];
+            tet.mu = R{} + all.mu[lane];
+            // What a batch brings of one side a tet brings of as many as there are lanes.
+            const std::int64_t next = 3 * std::int64_t{b.met[i]} * sides + lane * called;
             for (int side = 0; side < sides; side += lanes) {
                 each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);

@@ -7,10 +7,13 @@
 #include <stdexcept>
 
 #include "entity_blocks.hpp"
+#include "vertex_reach.hpp"
 
 namespace bezsoma {
 
 namespace {
+
+constexpr std::size_t piece = 4096; // vertices that a thread takes at a time
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
@@ -20,7 +23,8 @@ Preconditioner::Preconditioner(const ElasticTets &tets, const std::int32_t *corn
                                std::int64_t vertices, const std::uint8_t *fixed,
                                const Chunks &chunks, const Kernels &kernels, Team &team)
     : lanes_(kernels.lanes64), kernel_(kernels.blocks[tets.degree - 1]), team_(team), rows_{},
-      moments_from_{}, dots_(chunks.parts.size()) {
+      moments_from_{}, vertex_value_(size(6 * vertices)), vertex_z_(size(6 * vertices)),
+      dots_(chunks.parts.size()), vertex_dots_((size(vertices) + piece - 1) / piece) {
     const Entities found = entities(tets.degree, tets.first, corners, tets.tets, team);
     for (const Chunk &chunk : chunks.parts)
         range_.push_back(std::ranges::lower_bound(found.all, chunk.control, {}, &Entity::control) -
@@ -62,10 +66,10 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
         rows_[dim] = static_cast<std::int64_t>(rows);
         control_[dim].resize(all);
         vertices_[dim].resize(all * (dim + 1));
-        value_[dim].resize(all * triangle);
-        z_[dim].resize(all * rows);
+        value_[dim].resize(dim > 0 ? all * triangle : 0);
+        z_[dim].resize(dim > 0 ? all * rows : 0);
         moments_from_[dim] = moments;
-        moments += all * 3 * (dim + 1);
+        moments += all * size(moments_of(static_cast<int>(dim)));
         team_.run(batches, [&](std::size_t batch, std::size_t) {
             std::vector<double> scratch;
             std::vector<float> packed(triangle);
@@ -78,8 +82,10 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
                 for (std::size_t v = 0; v <= dim; ++v)
                     vertices_[dim][(batch * (dim + 1) + v) * lanes + lane] = entity.vertices[v];
                 blocks.inverse(size(e), fixed, scratch, packed.data());
+                float *to = dim > 0 ? value_[dim].data() + batch * triangle * lanes + lane
+                                    : vertex_value_.data() + 6 * size(entity.vertices[0]);
                 for (std::size_t i = 0; i < triangle; ++i)
-                    value_[dim][(batch * triangle + i) * lanes + lane] = packed[i];
+                    to[dim > 0 ? i * lanes : i] = packed[i];
             }
         });
     }
@@ -97,8 +103,9 @@ void Preconditioner::list_moments(std::int64_t vertices) {
                 for (std::size_t v = 0; v <= dim && number_[dim][i] >= 0; ++v) {
                     const std::size_t lanes = size(lanes_), batch = i / lanes, lane = i % lanes;
                     const std::size_t corner = batch * (dim + 1) + v;
+                    const std::size_t all = size(moments_of(static_cast<int>(dim)));
                     visit(size(vertices_[dim][corner * lanes + lane]),
-                          moments_from_[dim] + corner * 3 * lanes + lane);
+                          moments_from_[dim] + (batch * all + 3 * v) * lanes + lane);
                 }
             });
     };
@@ -120,9 +127,9 @@ BlockBatches Preconditioner::batches(std::size_t part, std::size_t dim) {
     return {group.batches,
             control_[dim].data() + lane,
             vertices_[dim].data() + lane * corners,
-            value_[dim].data() + lane * (rows * (rows + 1) / 2),
-            z_[dim].data() + lane * rows,
-            moments_.data() + moments_from_[dim] + lane * 3 * corners};
+            dim > 0 ? value_[dim].data() + lane * (rows * (rows + 1) / 2) : nullptr,
+            dim > 0 ? z_[dim].data() + lane * rows : nullptr,
+            moments_.data() + moments_from_[dim] + lane * moments_of(static_cast<int>(dim))};
 }
 
 double Preconditioner::forward(const double *r, double norm, std::vector<float> &coarse) {
@@ -132,31 +139,54 @@ double Preconditioner::forward(const double *r, double norm, std::vector<float> 
             if (groups_[dim][part].batches > 0)
                 dots_[part] += kernel_[dim].forward(batches(part, dim), r, 1 / norm);
     });
-    constexpr std::size_t piece = 4096;
     const std::size_t vertices = moment_start_.size() - 1;
     coarse.resize(3 * vertices);
-    team_.run((vertices + piece - 1) / piece, [&](std::size_t p, std::size_t) {
-        for (std::size_t v = p * piece; v < std::min((p + 1) * piece, vertices); ++v) {
-            float sum[3] = {};
-            for (auto m = size(moment_start_[v]); m < size(moment_start_[v + 1]); ++m)
-                for (int k = 0; k < 3; ++k)
-                    sum[k] += moments_[moment_[m] + size(k * lanes_)];
-            std::copy_n(sum, 3, coarse.data() + 3 * v);
-        }
+    team_.run(vertex_dots_.size(), [&](std::size_t p, std::size_t) {
+        vertex_dots_[p] = 0;
+        for (std::size_t v = p * piece; v < std::min((p + 1) * piece, vertices); ++v)
+            vertex_dots_[p] += at_vertex(v, coarse.data() + 3 * v);
     });
-    return std::accumulate(dots_.begin(), dots_.end(), 0.0) * norm * norm;
+    const double blocks = std::accumulate(dots_.begin(), dots_.end(), 0.0);
+    return std::accumulate(vertex_dots_.begin(), vertex_dots_.end(), blocks) * norm * norm;
+}
+
+/// Sums the moments at a vertex: those of degree 1 into `coarse`; keeps z of its own function and
+/// returns their product.
+double Preconditioner::at_vertex(std::size_t vertex, float *coarse) {
+    float sum[3] = {}, own[3] = {};
+    for (auto m = size(moment_start_[vertex]); m < size(moment_start_[vertex + 1]); ++m) {
+        const std::size_t at = moment_[m], lanes = size(lanes_);
+        for (std::size_t k = 0; k < 3; ++k)
+            sum[k] += moments_[at + k * lanes];
+        if (at < moments_from_[2])
+            for (std::size_t k = at < moments_from_[1] ? 0 : 6, c = 0; c < 3; ++k, ++c)
+                own[c] += moments_[at + k * lanes];
+    }
+    std::copy_n(sum, 3, coarse);
+    const float *b = vertex_value_.data() + 6 * vertex;
+    const float z[3] = {b[0] * own[0] + b[1] * own[1] + b[3] * own[2],
+                        b[1] * own[0] + b[2] * own[1] + b[4] * own[2],
+                        b[3] * own[0] + b[4] * own[1] + b[5] * own[2]};
+    std::copy_n(z, 3, vertex_z_.data() + 6 * vertex + 3);
+    return double{own[0]} * z[0] + double{own[1]} * z[1] + double{own[2]} * z[2];
 }
 
 void Preconditioner::back(const std::vector<float> &coarse, double norm, double beta, double *p) {
+    team_.run(vertex_dots_.size(), [&](std::size_t q, std::size_t) {
+        for (std::size_t v = q * piece; v < std::min((q + 1) * piece, coarse.size() / 3); ++v)
+            std::copy_n(coarse.data() + 3 * v, 3, vertex_z_.data() + 6 * v);
+    });
     team_.run(dots_.size(), [&](std::size_t part, std::size_t) {
         for (std::size_t dim = 0; dim < 4; ++dim)
             if (const Group &group = groups_[dim][part]; group.batches > 0)
-                kernel_[dim].back(batches(part, dim), group.entities, coarse.data(), norm, beta, p);
+                kernel_[dim].back(batches(part, dim), group.entities, vertex_z_.data(), norm, beta,
+                                  p);
     });
 }
 
 std::size_t Preconditioner::bytes() const {
-    std::size_t sum = 4 * (moment_.size() + moments_.size()) + 8 * moment_start_.size();
+    std::size_t sum = 4 * (moment_.size() + moments_.size()) + 8 * moment_start_.size() +
+                      4 * (vertex_value_.size() + vertex_z_.size());
     for (std::size_t dim = 0; dim < 4; ++dim)
         sum += 4 *
                (control_[dim].size() + vertices_[dim].size() + value_[dim].size() + z_[dim].size());

@@ -18,7 +18,8 @@ namespace bezsoma {
 using VertexSolver = std::function<void(const float *r, float *z)>;
 
 /// z = sum over entities of the inverse of their block, plus the degree-1 problem: additive, so
-/// that an iteration applies the operator once.
+/// that an iteration applies the operator once. The block of a vertex is that of a function which
+/// reaches along the edges: see vertex_reach.hpp.
 ///
 /// The degree-1 problem spans what is smooth, where the blocks are weak; the blocks span what is
 /// rough within a tet. Works in float32 on the residual scaled to norm one.
@@ -46,6 +47,7 @@ private:
     void arrange(const Entities &entities);
     void fill(const ElasticTets &tets, const Entities &entities, const std::uint8_t *fixed);
     void list_moments(std::int64_t vertices);
+    double at_vertex(std::size_t vertex, float *coarse);
     BlockBatches batches(std::size_t part, std::size_t dim);
 
     int lanes_;
@@ -61,7 +63,10 @@ private:
     std::vector<float> moments_;
     std::vector<std::int64_t> moment_start_; // (vertices + 1,)
     std::vector<std::uint32_t> moment_;      // where a vertex' moments stand
+    std::vector<float> vertex_value_;        // (vertices, 6) the inverses of their blocks
+    std::vector<float> vertex_z_;            // (vertices, 2, 3) of degree 1, of their own functions
     std::vector<double> dots_;               // a chunk each
+    std::vector<double> vertex_dots_;        // a piece of vertices each
 };
 
 } // namespace bezsoma

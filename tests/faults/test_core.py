@@ -96,6 +96,18 @@ os._exit(0 if right and tasks == 3 else 1) if generation else print(right, tasks
 """
 
 
+def test_what_is_still_held_when_python_ends_is_not_spoken_of() -> None:
+    """A law that something holds to the end: here by a count of references that nobody gives back."""
+    held = (
+        "law = bz.NeoHooke(E=1.0, nu=0.3).core\n"
+        "import ctypes; ctypes.pythonapi.Py_IncRef(ctypes.py_object(law))\n"
+        "print(law.name)"
+    )
+    command = [sys.executable, "-c", prelude() + "import bezsoma as bz\n" + held]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=100)
+    assert done.stdout == "neo_hooke\n" and not done.stderr
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="threads are counted as on Linux")
 def test_an_operator_works_on_in_a_fork() -> None:
     """The child has the operator and none of its threads; it takes new ones."""

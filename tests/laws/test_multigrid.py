@@ -24,8 +24,6 @@ from tolerances import ENERGY_NORM
 
 ITERATIONS = {2: 53, 3: 61, 4: 69, 5: 86, 6: 107}
 """Steps to 1e-8 at nu = 0.3 on the cube below, as the design has them."""
-ALLOWANCE = 1.03
-"""Aggregates are ours, and need a step or two more than the prototype's at degree 4."""
 FLAT = 1.10
 """How far steps may grow when the mesh is refined."""
 CLOSE = 1e-10
@@ -119,12 +117,15 @@ def test_all_of_its_spectrum_is_positive(degree: int) -> None:
 def test_entity_blocks_are_inverses_of_the_matrix(degree: int) -> None:
     """A residual inside one entity comes back as the inverse of its block times it.
 
-    Moments are taken out of the residual first, so that degree 1 stays silent.
+    Moments are taken out of the residual first, so that degree 1 stays silent, and so do the
+    functions of vertices, which see what lies along edges.
     """
     body = Body(block(cells=2, irregular=0.3), degree, LinearElastic(1, 0.3), [Fixed("left")])
     B = Apart(body)
     K = assembled(B.net, *moduli(body)).scipy().tocsr()
     elevation = elevated_hats(B.net)
+    along_edges = np.stack([reaching(B.net, v) for v in range(len(body.mesh.points))], axis=1)
+    vertices = np.where(B.held[B.net.starts[0]].any(axis=1), -1, B.net.starts[0])
     scales: list[float] = []  # a preconditioner may have any, but one
     for dim in range(1, min(degree, 4)):
         starts = B.net.starts[dim]
@@ -135,16 +136,60 @@ def test_entity_blocks_are_inverses_of_the_matrix(degree: int) -> None:
             controls = starts[entity] + np.arange(inside)
             if B.held[controls].any() or inside <= dim + 1:
                 continue  # nothing is left where the moments of all its vertices vanish
-            weights = elevation[controls]
+            weights = elevation[controls] - (along_edges[controls] if dim == 1 else 0)
             r = np.zeros((B.net.count, 3))
             rough = np.random.default_rng(1).standard_normal((inside, 3))
             r[controls] = rough - weights @ np.linalg.lstsq(weights, rough, rcond=None)[0]
+            r[vertices[vertices >= 0]] -= (elevation.T @ r)[vertices >= 0]
             rows = (3 * controls[:, None] + np.arange(3)).ravel()
             expected = np.linalg.solve(K[rows][:, rows].toarray(), r[controls].ravel())
             found = B(r)[controls].ravel()
             scales.append(float(found @ expected / (expected @ expected)))
             assert np.abs(found - scales[0] * expected).max() < FLOAT32 * np.abs(found).max()
     assert len(scales) > 1
+
+
+@pytest.mark.parametrize("degree", [2, 3, 4, 6])
+def test_functions_of_vertices_reach_along_edges(degree: int) -> None:
+    """A residual comes back at a vertex as the inverse of the block of its function times it.
+
+    Moments are taken out of the residual first, so that degree 1 stays silent.
+    """
+    body = Body(block(cells=2, irregular=0.3), degree, LinearElastic(1, 0.3), [Fixed("left")])
+    B = Apart(body)
+    K = assembled(B.net, *moduli(body)).scipy().tocsr()
+    r = B.free_vectors(1)[0]
+    vertices = B.net.starts[0]
+    free = np.flatnonzero(~B.held[vertices].any(axis=1))
+    r[vertices[free]] -= (elevated_hats(B.net).T @ r)[free]
+    found, expected = [], []
+    for vertex in free:
+        psi = np.kron(reaching(B.net, vertex)[:, None], np.eye(3))
+        expected.append(np.linalg.solve(psi.T @ (K @ psi), psi.T @ r.ravel()))
+    far = np.flatnonzero(B.held[vertices].any(axis=1))
+    r[vertices[far]] = 0.0  # held vertices take no part
+    found = B(r)[vertices[free]].ravel()
+    wanted = np.concatenate(expected)
+    scale = float(found @ wanted / (wanted @ wanted))
+    assert np.abs(found - scale * wanted).max() < FLOAT32 * np.abs(found).max()
+
+
+def reaching(net: ControlNet, vertex: int) -> Floats:
+    """The controls (c,) of a vertex' function: of least gradient on a regular tet, along edges."""
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1.0]])
+    one = ControlNet(TetMesh(corners, [[0, 1, 2, 3]]), net.degree)
+    blocks = assembled(one, np.zeros(1), np.ones(1)).scipy().toarray()
+    gradients = np.einsum("akbk->ab", blocks.reshape(one.count, 3, one.count, 3))  # 4 grad . grad
+    along = one.of_edges(np.array([[0, 1], [0, 2], [0, 3]]))
+    inner = along[:, 1:-1].ravel()
+    weights = -np.linalg.solve(gradients[np.ix_(inner, inner)], gradients[inner, along[0, 0]])
+    by_distance = np.array([1.0, *weights[: net.degree - 1], 0.0])
+    psi = np.zeros(net.count)
+    for edge in net.mesh.all_edges:
+        if vertex in edge:
+            controls = net.of_edges(edge[None].astype(np.int64))[0]
+            psi[controls] = by_distance if edge[0] == vertex else by_distance[::-1]
+    return psi
 
 
 def elevated_hats(net: ControlNet) -> Floats:
@@ -161,7 +206,7 @@ def elevated_hats(net: ControlNet) -> Floats:
 def test_steps_are_few_and_do_not_grow_with_the_mesh(degree: int) -> None:
     sizes = (8, 16) if degree == 2 else (8, 12) if degree == 3 else (4, 8)
     steps = [solve(cube(degree, cells), solver="multigrid").iterations for cells in sizes]
-    assert steps[1] <= ITERATIONS[degree] * ALLOWANCE
+    assert max(steps) <= ITERATIONS[degree]
     assert steps[1] <= FLAT * steps[0]
 
 
