@@ -96,7 +96,8 @@ double forward(const BlockBatches &b, const double *r, double scale) {
                 for (int k = 0; k < 3; ++k) {
                     moments[3 * v + k] += vertex_weights<n, dim>.of[a][v] * x[3 * a + k];
                     if constexpr (dim == 1)
-                        moments[3 * (2 + v) + k] += vertex_weights<n, dim>.reaching[a][v] * x[3 * a + k];
+                        moments[3 * (2 + v) + k] +=
+                            vertex_weights<n, dim>.reaching[a][v] * x[3 * a + k];
                 }
         for (int m = 0; m < moments_of(dim); ++m)
             store<float, lanes>(b.moments + (i * moments_of(dim) + m) * lanes, moments[m]);

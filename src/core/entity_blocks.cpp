@@ -190,7 +190,8 @@ EntityBlocks::EntityBlocks(const ElasticTets &tets, const Entities &entities)
     }
 }
 
-/// n^2 V sum_ij c_ij (lambda g_i g_j^T + mu g_j g_i^T + mu g_i.g_j I) of all tets at a vertex, (3, 3).
+/// n^2 V sum_ij c_ij (lambda g_i g_j^T + mu g_j g_i^T + mu g_i.g_j I) of all tets at a vertex, (3,
+/// 3).
 void EntityBlocks::sum_around_vertex(std::size_t e, double *q) const {
     std::fill_n(q, 9, 0.0);
     for (auto t = size(entities_.start[e]); t < size(entities_.start[e + 1]); ++t) {

@@ -12,8 +12,8 @@
 
 namespace bezsoma::BEZSOMA_ISA {
 
-/// In place of what is kept: det grad L_i, i = 1..3, and the material over 6 |det|, which is V over the
-/// square of det. No root is needed, and one division.
+/// In place of what is kept: det grad L_i, i = 1..3, and the material over 6 |det|, which is V over
+/// the square of det. No root is needed, and one division.
 template <class T, int lanes>
 BEZSOMA_INLINE void form_shapes(const T *points, const std::int32_t *first, Batch<T, lanes> &tet) {
     using R = Lanes<T, lanes>;

@@ -8,8 +8,8 @@
 //   psi = B_(n e_0) + sum_(j = 1 to n-1) c_j sum_(k = 1 to 3) B_((n-j) e_0 + j e_k),
 //
 // with the c_j that make int |grad psi|^2 least on a regular tet. They are the same numbers for
-// all tets, so neighbours agree along an edge. The low-energy basis of S. J. Sherwin and M. Casarin,
-// J. Comput. Phys. 171 (2001) 394-417, in its smallest form.
+// all tets, so neighbours agree along an edge. The low-energy basis of S. J. Sherwin and M.
+// Casarin, J. Comput. Phys. 171 (2001) 394-417, in its smallest form.
 #pragma once
 
 #include "tet_controls.hpp"

@@ -97,7 +97,7 @@ os._exit(0 if right and tasks == 3 else 1) if generation else print(right, tasks
 
 
 def test_what_is_still_held_when_python_ends_is_not_spoken_of() -> None:
-    """A law that something holds to the end: here by a count of references that nobody gives back."""
+    """A law that something holds to the end: here a count of references that nobody gives back."""
     held = (
         "law = bz.NeoHooke(E=1.0, nu=0.3).core\n"
         "import ctypes; ctypes.pythonapi.Py_IncRef(ctypes.py_object(law))\n"

@@ -223,11 +223,11 @@ class ControlNet:
     def elevated(self, controls: Floats, source: ControlNet) -> Floats:
         """The controls here (c, ...) of the field that has the given ones on a lower net."""
         by = self.degree - source.degree
-        return self.formed(lambda dim: bernstein.elevation(source.degree, dim, by), controls, source)
+        return self.formed(
+            lambda dim: bernstein.elevation(source.degree, dim, by), controls, source
+        )
 
-    def formed(
-        self, form: Callable[[int], Floats], controls: Floats, source: ControlNet
-    ) -> Floats:
+    def formed(self, form: Callable[[int], Floats], controls: Floats, source: ControlNet) -> Floats:
         """What matrices make of controls on another net of the mesh (c, ...), each row once.
 
         form(dim) (m, m') takes the source's controls on a simplex of that dimension to what stands

@@ -110,9 +110,7 @@ def _shared(kind: Cells, mesh: TetMesh, fields: Mapping[str, Field], chosen: int
     return net.points, data, lambda part: net.closure(3, part)
 
 
-def _tet_by_tet(
-    kind: Cells, mesh: TetMesh, fields: Mapping[str, AnyField], chosen: int
-) -> _Points:
+def _tet_by_tet(kind: Cells, mesh: TetMesh, fields: Mapping[str, AnyField], chosen: int) -> _Points:
     """Points of each tet's own."""
     lattice = domain_points(chosen, 3)
     of_tet = np.arange(len(mesh.tets) * len(lattice)).reshape(-1, len(lattice))
