@@ -135,7 +135,7 @@ def main() -> int:
     notes = Notes()
     with pytest.MonkeyPatch.context() as patch:
         notes.listen(patch)
-        status = pytest.main(["-q", "-p", "no:cacheprovider", "tests/faults"])
+        status = pytest.main(["-q", "-p", "no:cacheprovider", *(sys.argv[1:] or ["tests/faults"])])
     if status == 0:
         PAGE.write_text(page(list(notes.found)), encoding="utf-8")
     return int(status)

@@ -402,7 +402,7 @@ CORE_ERRORS = (
         "a tangent without the change of I2",
         f"{CORE}/laws/finite_strain.hpp",
         "I2 = x.K[0] + x.K[1] + x.K[2];",
-        "I2 = {x.K[0].v + x.K[1].v + x.K[2].v, R{}};",
+        "I2 = Dual<R>{x.K[0].v + x.K[1].v + x.K[2].v, R{}};",
         LAWS,
     ),
     Mutant(
@@ -439,6 +439,7 @@ CORE_ERRORS = (
         "? T(1e-34) : T(1e-13)",
         "? T(1e-4) : T(1e-4)",
         LAWS,
+        compiled=True,
     ),
     Mutant(
         "a reciprocal root with one of Newton's steps too few",

@@ -273,8 +273,8 @@ LAW = (
         ),
         (
             "half the second term of Veronda and Westmann in the stress",
-            "{ return -par[1] * par[2] / 2; }",
-            "{ return -par[1] * par[2] / 4; }",
+            "return -par[1] * par[2] / 2;",
+            "return -par[1] * par[2] / 4;",
         ),
         (
             "twice the volume's energy of the neo-Hookean law",
@@ -294,8 +294,8 @@ LAW = (
         ),
         (
             "half of what turns with the frame",
-            "            turned};",
-            "            turned * T(0.5)};",
+            "turned = of.squared * of.squared * (w2 * T(4));",
+            "turned = of.squared * of.squared * (w2 * T(2));",
         ),
     ),
     *errors_in(
@@ -341,8 +341,8 @@ LAW = (
         LAWS,
         (
             "half the change of 1/lambda^2",
-            "- 2 * b[a] * dlog[a])",
-            "- b[a] * dlog[a])",
+            "(dm[a][a] - 2 * b[a] * dlog[a])",
+            "(dm[a][a] - 1 * b[a] * dlog[a])",
         ),
         (
             "Ogden's energy without its exponent below",

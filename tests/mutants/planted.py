@@ -159,7 +159,7 @@ def alone(text: str) -> bool:
     depth = 0
     for at in range(len(text)):
         depth += opens(text, at) - closes(text, at)
-        if depth == 0 and text[at] in ",;?":
+        if depth == 0 and ends_expression(text, at):
             return False
     return True
 
@@ -224,7 +224,7 @@ def end_of_expression(text: str, at: int) -> int:
 def ends_expression(text: str, at: int) -> bool:
     """Whether a comma, semicolon, question mark or colon (of a choice or a range) stands here."""
     if text[at] == ":":
-        return ":" not in (text[at - 1], text[at + 1])
+        return ":" not in (text[at - 1 : at], text[at + 1 : at + 2])
     return text[at] in ",;?"
 
 

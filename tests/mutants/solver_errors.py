@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from mutants.mutant import errors_in
+from mutants.mutant import Mutant, errors_in
 
 CORE = "src/core"
 MULTIGRID = ("tests/laws/test_multigrid.py",)
@@ -319,9 +319,9 @@ MESH = (
             "next += 1;",
         ),
         (
-            "the first row with a vertex twice for the one that has it",
-            "twice = static_cast<std::int64_t>(i);",
-            "twice = 0;",
+            "a row with a vertex twice let through",
+            "if (twice < 0 && std::adjacent_find(row, row + width) != row + width)",
+            "if (twice < 0 && std::adjacent_find(row, row + width) == row)",
         ),
         (
             "a row found where another one stands",
@@ -339,6 +339,15 @@ MESH = (
             "i % 2 ? -sign[i / 4] : sign[i / 4]",
             "i % 2 ? sign[i / 4] : sign[i / 4]",
         ),
+    ),
+    Mutant(
+        "the first row with a vertex twice for the one that has it",
+        f"{CORE}/topology.cpp",
+        "twice = static_cast<std::int64_t>(i);",
+        "twice = 0;",
+        (*MESHES, *NETS),
+        argued="whoever asks looks only whether there is such a row, and finds them all anew for "
+        "the message; the number is a hint that nobody takes",
     ),
     *errors_in(
         f"{CORE}/shape.cpp",
