@@ -57,7 +57,7 @@ class Notes:
 
     def note(self, message: str) -> None:
         """Remember a message of the test that runs; places of this machine are left out."""
-        text = re.sub(r"/\S*/pytest-of-[^/]+/pytest-\d+/[^/\s]+/", "", message.strip())
+        text = re.sub(r"/[^\s']*/pytest-\d+/(?:[^/\s']+/)?", "", message.strip())
         text = text.replace(f"{ROOT}/", "").replace(str(Path(sys.prefix)), "...")
         test = os.environ["PYTEST_CURRENT_TEST"].rsplit(" (", 1)[0].removeprefix("tests/faults/")
         self.found[Fault(test, re.sub(r" at 0x[0-9a-f]+", "", text))] = None
