@@ -48,7 +48,7 @@ def surface_net(part):
     found = net.GetOutput()
     index = vtk_to_numpy(found.GetPoints().GetData()).astype(float) - 1
     triangles = vtk_to_numpy(found.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    return part.frame.points(index), triangles.astype(np.int32)
+    return np.ascontiguousarray(part.frame.points(index)), triangles.astype(np.int32, order="C")
 
 
 def named(part, points, tets):
@@ -71,7 +71,7 @@ def by_ftetwild(part, sizes, ours):
     """A mesh of the domain by the other way, sized like ours."""
     points, triangles = surface_net(part)
     found = tetrahedralize(
-        points, triangles, num_threads=1, epsilon=5e-4, bg_vertices=ours.points,
+        points, triangles, num_threads=1, epsilon=5e-4, bg_vertices=ours.points.copy(),
         bg_tets=ours.tets.astype(np.int32), bg_values=LONGER * sizes.wanted(part, ours.points),
     )  # fmt: skip
     return named(part, *found[:2])
