@@ -72,8 +72,8 @@ HEAD = """# Licences
 
 What `pip install bezsoma` brings, with all that these packages need in their turn, and its extra
 `imaging`: read from what was installed when this page was built, as each package says itself.
-BezSoma is BSD-3-Clause. A test holds every licence to be a permissive one. The same with hashes is
-the bill of materials, `dist/bezsoma.cdx.json`, that `./dev build` makes.
+BezSoma is BSD-3-Clause. A test holds every licence to be a permissive one. The same, for
+machines, is the bill of materials, `dist/bezsoma.cdx.json`, that `./dev build` makes.
 
 | package | version | only with | licence |
 |---|---|---|---|
