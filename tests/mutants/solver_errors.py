@@ -30,7 +30,7 @@ BLOCKS = (
         ),
         (
             "controls that follow the first vertex of their entity alone",
-            "vertex_weights<n, dim>.of[a][v] * corner[3 * v + k]",
+            "vertex_weights<n, dim>.of[a][v] * corner[taken * v + k]",
             "vertex_weights<n, dim>.of[a][v] * corner[k]",
         ),
         (
@@ -87,13 +87,13 @@ BLOCKS = (
         MULTIGRID,
         (
             "moments in x for all directions",
-            "sum[k] += moments_[moment_[m] + size(k * lanes_)];",
-            "sum[k] += moments_[moment_[m]];",
+            "sum[k] += moments_[at + k * lanes];",
+            "sum[k] += moments_[at];",
         ),
         (
             "r.z with the norm in place of its square",
-            "0.0) * norm * norm;",
-            "0.0) * norm;",
+            "blocks) * norm * norm;",
+            "blocks) * norm;",
         ),
     ),
 )
