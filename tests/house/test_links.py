@@ -21,6 +21,7 @@ IS_DOI = re.compile(r"10\.\d{4,9}/[A-Za-z0-9][A-Za-z0-9._()/:<>-]+")
 HOSTS = {
     "doi.org",
     "github.com",
+    "hypothesis.readthedocs.io",
     "pyvista.org",
     "raw.githubusercontent.com",
     "semver.org",
