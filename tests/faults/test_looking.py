@@ -152,7 +152,7 @@ def test_the_same_picture_in_python(finished: Path) -> None:
     ("words", "said"),
     [
         (["picture", "-o", "a.jpg"], "would hold a PNG; end it in .png"),
-        (["film", "-q", "-o", "a.mp4"], "would hold a GIF; end it in .gif"),
+        (["film", "-q", "-o", "a.mov"], "end it in .gif or .mp4"),
     ],
 )
 def test_a_name_that_promises_another_kind_of_file_is_refused(

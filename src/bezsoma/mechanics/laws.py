@@ -293,8 +293,8 @@ class Secant:
 
 def _answers(law: FunctionLaw) -> None:
     """Refuses a function that does not answer with stress at rest, or cannot be differentiated."""
-    rest = np.zeros((2, 3, 3))
-    law.stress(rest)
+    rest = np.zeros((2, 3, 3))  # without the volume: kappa may be infinite
+    law._asked("stress", law.function, rest)
     try:
         slope = law.shape_slope(rest, np.tile(np.diag([1.0, 0.5, 0.2]), (2, 1, 1)))
     except InputError as error:
@@ -304,7 +304,8 @@ def _answers(law: FunctionLaw) -> None:
             f"the derivative of FunctionLaw cannot be taken ({error.__cause__ or error}); give "
             "derivative=a function of (H, dH), or 'differences'"
         ) from error
-    law.energy(rest)
+    if law.stored is not None:
+        law._asked("energy", law.stored, rest)
     if not (np.isfinite(slope).all() and np.any(slope)):
         raise InputError(
             "the derivative of FunctionLaw at rest is zero or not finite: a complex step needs a "
