@@ -105,6 +105,25 @@ def test_a_warning_says_how_its_advice_is_written_in_a_case(tmp_path: Path) -> N
     assert said.endswith("in the case file: incompressible = true beside degree")
 
 
+def test_tissue_that_folds_between_the_points_of_the_quadrature_is_a_warning(
+    tmp_path: Path,
+) -> None:
+    """One cell deep, its top pushed through the bottom: no point of the quadrature sees it."""
+    results = ran(
+        tmp_path,
+        ("nu = 0.3", 'nu = 0.3\nlaw = "neo-hooke"'),
+        ("size = [2, 1, 1], cells = [2, 1, 1]", "size = [1, 1, 1], cells = [1, 1, 1]"),
+        ('on = "left"', 'on = "bottom"'),
+        ('["right"]', '["top"]'),
+        ("[0.1, 0, 0]", "[0, 0, -1.5]"),
+        ("point = [1, 0.5, 0.5]", "point = [1, 0.5, 1]"),
+        ("between = [0.04, 0.06]", "between = [-9, 9]"),
+    )
+    said = [each for each in results.summary["warnings"] if "turned inside out" in each]
+    assert len(said) == 1 and "cannot be trusted" in said[0]
+    assert f"Beware: {said[0]}" in (tmp_path / "out" / "README.txt").read_text("utf-8")
+
+
 def test_a_run_can_be_run_again_as_it_was_asked_for(tmp_path: Path) -> None:
     folder = tmp_path / "out"
     case = bz.read_case(case_file(tmp_path))

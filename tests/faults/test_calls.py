@@ -186,7 +186,8 @@ def test_a_case_may_be_given_by_its_path(tmp_path: Path) -> None:
 def test_a_solution_shows_itself_in_one_line() -> None:
     assert repr(solution()) == (
         f"Solution(degree=1, unknowns=24, method={solution().method!r}, "
-        f"energy={solution().energy:.6g} N mm, largest_displacement=0.1 mm)"
+        f"energy={solution().energy:.6g} N mm, largest_displacement=0.1 mm, "
+        f"advice={solution().advice!r})"
     )
 
 

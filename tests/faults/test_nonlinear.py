@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -283,6 +284,50 @@ def test_user_law_that_raises_is_told_with_its_reason() -> None:
         bz.solve(body(bz.FunctionLaw(fails_above(broken)), (0, 0, 0.4)))
 
 
+ANSWERS: list[tuple[Any, str]] = [
+    (lambda H: H * (1 + 1j), "numbers of type complex128 for H of type float64"),
+    (lambda H: np.full(H.shape, "stiff"), "numbers of type <U5"),
+    (lambda H: np.full(H.shape, None), "numbers of type object"),
+]
+
+
+@pytest.mark.parametrize(("answer", "said"), ANSWERS, ids=[said for _, said in ANSWERS])
+def test_user_law_that_answers_with_no_real_numbers(answer: Any, said: str) -> None:
+    with pytest.raises(bz.InputError, match=said):
+        bz.FunctionLaw(answer, derivative="differences")
+    with pytest.raises(bz.InputError, match=said):
+        bz.solve(body(bz.FunctionLaw(fails_above(answer), derivative="differences"), (0, 0, 0.4)))
+
+
+def test_user_law_that_writes_into_its_argument_is_refused() -> None:
+    """Its energy would else be that of other strains than the solver's."""
+
+    def writes(H: Any) -> Any:
+        H *= 1.1
+        return H
+
+    with pytest.raises(bz.InputError, match=r"read-only.*leave H as it is"):
+        bz.FunctionLaw(writes)
+
+
+def test_user_law_may_answer_with_lists() -> None:
+    law = bz.FunctionLaw(lambda H: (2.0 * H).tolist(), energy=lambda H: (H**2).sum((-2, -1)))
+    assert abs(bz.solve(body(law)).energy - 0.01) < 1e-12
+
+
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+def test_user_law_whose_derivative_gives_no_numbers(solver: str) -> None:
+    def twice(H: Any) -> Any:
+        return H + np.swapaxes(H, -1, -2)
+
+    def slope(H: Any, dH: Any) -> Any:
+        return twice(dH) * np.where(np.abs(twice(H)) > 0.05, np.nan, 1 + 3 * twice(H) ** 2)
+
+    law = bz.FunctionLaw(lambda H: twice(H) + twice(H) ** 3, derivative=slope, finite=False)
+    with pytest.raises(bz.NotConverged, match="range of numbers"):
+        bz.solve(body(law, (0.4, 0, 0.0)), solver=solver)
+
+
 def test_user_law_that_answers_with_another_shape_at_large_strain() -> None:
     with pytest.raises(bz.InputError, match=r"answers with shape \(\d+, \d+, 3\) for H of shape"):
         bz.solve(body(bz.FunctionLaw(fails_above(lambda H: H[..., 0])), (0, 0, 0.4)))
@@ -294,6 +339,13 @@ def test_tissue_that_folds_between_the_points_of_the_quadrature_is_told() -> Non
     folded = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))
     (said,) = folded.path[-1].events
     assert "turned inside out at corners of 6 of 6 tets" in said and "region 'tissue'" in said
+    assert folded.advice == said == folded.summary()["advice"] and said in repr(folded)
     supports[1] = bz.Moved("top", translation=(0, 0, -0.2))
     sound = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))
-    assert not sound.path[-1].events
+    assert not sound.path[-1].events and not sound.advice and "advice" not in repr(sound)
+
+
+def test_advice_on_a_body_with_a_pressure_is_in_its_summary() -> None:
+    found = bz.solve(body(bz.NeoHooke(1.0, 0.5), incompressible=True))
+    assert "advice" not in found.summary()
+    assert replace(found, advice="beware").summary()["advice"] == "beware"

@@ -16,6 +16,7 @@ from bezsoma.mechanics.laws import at_rest
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.solvers import kept
 from bezsoma.solvers.kept import Kept
+from bezsoma.solvers.multigrid import preconditioned
 
 E, NU = 0.015, 0.45
 
@@ -51,6 +52,15 @@ def test_it_is_built_at_the_state_that_comes_next() -> None:
     one.learn(100, 1e-2)
     one.at(np.full(3, 7.0))
     assert states[0] is None and np.array_equal(states[1], np.full(3, 7.0))
+
+
+def test_one_with_which_a_solve_failed_is_not_kept() -> None:
+    """The first solve after it was built has nothing to be measured against."""
+    one = heard()
+    one.failed()
+    one.at(np.zeros(1))
+    one.at(np.zeros(1))
+    assert one.built == 2
 
 
 LAWS = {
@@ -90,6 +100,19 @@ def test_moduli_grow_as_the_law_stiffens_and_stay_positive_where_it_softens() ->
     lam, mu = at_rest(law)
     assert np.all(pressed[:, 1] >= SOFTEST * mu)
     assert np.all(pressed @ [1, 2 / 3] >= SOFTEST * (lam + 2 * mu / 3) * (1 - 1e-12))
+
+
+def test_moduli_stay_in_the_range_of_float32_where_an_exponential_all_but_overflows() -> None:
+    """At A s^2 = 640 the tangent has numbers, the blocks of a preconditioner would have none."""
+    net = ControlNet(bz.block(cells=2), 2)
+    found = moduli_at(
+        Pointwise(net, [LAWS["stiffening"]], 6), net.points * [16.0, 0.0, 0.0] / 1.155
+    )
+    assert found.max() < 1e10 * E
+    operator = MatrixFree(net, found, region=np.arange(len(found)))
+    r = np.where(net.points[:, 2:] > 0, net.points, 0.0)
+    held = np.broadcast_to(net.points[:, 2:] == 0, r.shape)
+    assert np.isfinite(preconditioned(operator, held)(r)).all()
 
 
 def test_a_law_a_tet_is_a_law_a_region_where_they_are_the_same() -> None:

@@ -25,8 +25,8 @@ def inside_out(net: ControlNet, laws: Sequence[Any], u: Floats) -> str:
     >>> net = ControlNet(block(), 2)
     >>> inside_out(net, [NeoHooke(1.0, 0.3)], 0.5 * net.points)
     ''
-    >>> inside_out(net, [NeoHooke(1.0, 0.3)], net.points * [0, 0, -1.5])[:46]
-    'turned inside out at corners of 6 of 6 tets, J'
+    >>> inside_out(net, [NeoHooke(1.0, 0.3)], net.points * [0, 0, -1.5])[:60]
+    'the tissue is turned inside out at corners of 6 of 6 tets, J'
     """
     corners = bernstein.derivatives(net.degree, np.eye(4))
     mesh, bad, worst = net.mesh, 0, (np.inf, -1, 0)
@@ -43,7 +43,8 @@ def inside_out(net: ControlNet, laws: Sequence[Any], u: Floats) -> str:
         return ""
     place = ", ".join(f"{x:.4g}" for x in mesh.points[mesh.tets[tet, corner]])
     return (
-        f"turned inside out at corners of {bad} of {len(mesh.tets)} tets, J = {J_least:.3g} in tet "
-        f"{tet} of region {mesh.regions[mesh.region[tet]]!r} at ({place}) mm: the points of the "
-        "quadrature did not see it; a finer mesh, a higher exactness or a smaller motion would"
+        f"the tissue is turned inside out at corners of {bad} of {len(mesh.tets)} tets, J = "
+        f"{J_least:.3g} in tet {tet} of region {mesh.regions[mesh.region[tet]]!r} at ({place}) mm: "
+        "the points of the quadrature did not see it, and the answer cannot be trusted there; take "
+        "a finer mesh, a higher exactness or a smaller motion"
     )

@@ -11,6 +11,9 @@ from bezsoma.mechanics.laws import Law, at_rest
 
 SOFTEST = 0.1
 """A preconditioner has to stay positive: no modulus below this part of what it is at rest."""
+STIFFEST = 1e6
+"""Its blocks are float32 and have to hold numbers where an exponential all but overflows: no
+modulus above so many times what it is at rest."""
 
 
 def moduli_at(pointwise: Pointwise, u: Floats) -> Floats:
@@ -53,9 +56,9 @@ def _near(law: Law, H: Floats) -> Floats:
     mu = (3 * whole - swelling) / 30
     kappa = swelling / 9
     lam, rest = at_rest(law)
-    mu = np.fmax(np.where(np.isfinite(mu), mu, rest), SOFTEST * rest)
+    mu = np.clip(np.where(np.isfinite(mu), mu, rest), SOFTEST * rest, STIFFEST * rest)
     bulk = lam + 2 * rest / 3
-    kappa = np.fmax(np.where(np.isfinite(kappa), kappa, bulk), SOFTEST * bulk)
+    kappa = np.clip(np.where(np.isfinite(kappa), kappa, bulk), SOFTEST * bulk, STIFFEST * bulk)
     return np.stack([kappa - 2 * mu / 3, mu], axis=1)
 
 

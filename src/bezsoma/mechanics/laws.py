@@ -134,7 +134,7 @@ class FunctionLaw:
 
     def stress(self, H: Floats) -> Floats:
         """What the function says, (..., 3, 3) MPa, and the pressure of the volume."""
-        shape = self._asked("stress", self.function, H)
+        shape = self.shape_stress(H)
         if self.kappa is None:
             return shape
         change, gradient = _volume(H, self.finite)
@@ -154,7 +154,7 @@ class FunctionLaw:
         """The energy that was given and that of the volume, or stress : H, N/mm2."""
         if self.stored is None:
             return np.asarray(np.einsum("...ij,...ij->...", self.stress(H), H))
-        stored = self._asked("energy", self.stored, H)
+        stored = self.shape_energy(H)
         if self.kappa is None:
             return stored
         return np.asarray(stored + self.kappa / 2 * _volume(H, self.finite)[0] ** 2)
@@ -162,7 +162,7 @@ class FunctionLaw:
     def mixed_stress(self, H: Floats, p: Floats) -> tuple[Floats, Floats]:
         """P and c: see `MixedLaw`."""
         change, gradient = _volume(H, self.finite)
-        shape = self._asked("stress", self.function, H)
+        shape = self.shape_stress(H)
         return shape - p[..., None, None] * gradient, -change - p / self._kappa
 
     def mixed_derivative(
@@ -176,25 +176,28 @@ class FunctionLaw:
 
     def mixed_energy(self, H: Floats, p: Floats) -> Floats:
         """The energy of the shape, or its stress : H, and p^2 / (2 kappa), N/mm2."""
-        if self.stored is not None:
-            shape = self._asked("energy", self.stored, H)
-        else:
-            shape = np.einsum("...ij,...ij->...", self._asked("stress", self.function, H), H)
-        return np.asarray(shape + p**2 / (2 * self._kappa))
+        return np.asarray(self.shape_energy(H) + p**2 / (2 * self._kappa))
 
     @property
     def _kappa(self) -> float:
         assert self.kappa is not None  # Body refuses a law without it beside a pressure
         return self.kappa
 
+    def shape_stress(self, H: Floats) -> Floats:
+        """What the function says, without the volume's stress."""
+        return self._asked("stress", self.function, H)
+
+    def shape_energy(self, H: Floats) -> Floats:
+        """The energy that was given, or the function's stress : H, without the volume's."""
+        if self.stored is not None:
+            return self._asked("energy", self.stored, H)
+        return np.asarray(np.einsum("...ij,...ij->...", self.shape_stress(H), H))
+
     def shape_slope(self, H: Floats, dH: Floats) -> Floats:
         """The change of the function in the direction dH, without the volume's."""
         if callable(self.slope):
             return self._asked("derivative", self.slope, H, dH)
-
-        def stress(H: Floats) -> Floats:
-            return self._asked("stress", self.function, H)
-
+        stress = self.shape_stress
         if self.slope == "complex step":
             return np.asarray(stress(H + 1j * COMPLEX_STEP * dH).imag / COMPLEX_STEP)
         size = np.sqrt((dH**2).sum(axis=(-2, -1), keepdims=True))
@@ -202,23 +205,39 @@ class FunctionLaw:
         return np.asarray((stress(H + h * dH) - stress(H - h * dH)) / (2 * h))
 
     def _asked(self, what: str, function: Callable[..., Floats], *arrays: Floats) -> Floats:
-        """What a function of the user's answers, refused where it raises or has another shape."""
+        """What a function of the user's answers, refused where it raises or is not as it must be.
+
+        It may not write into its arguments: others read the same numbers after it.
+        """
         H = np.broadcast_shapes(*(array.shape for array in arrays))
         each = {"energy": "number", "stress": "3 x 3 stress"}.get(what, "3 x 3 change of stress")
         shape = H[:-2] if what == "energy" else H
         try:
-            found = function(*arrays)
+            found = np.asarray(function(*(_unwritable(array) for array in arrays)))
         except Exception as error:
             raise InputError(
                 f"the {what} of FunctionLaw raises {type(error).__name__} ({error}) for H of shape "
-                f"{H}; it must answer for arrays of any such shape and any H with det(I + H) > 0"
+                f"{H}; it must answer for arrays of any such shape and any H with det(I + H) > 0, "
+                "and leave H as it is"
             ) from error
-        if np.shape(found) != shape:
+        if found.shape != shape:
             raise InputError(
-                f"the {what} of FunctionLaw answers with shape {np.shape(found)} for H of shape "
+                f"the {what} of FunctionLaw answers with shape {found.shape} for H of shape "
                 f"{H}; it must give one {each} for each H, shape {shape}"
             )
+        if found.dtype.kind not in ("iufc" if any(map(np.iscomplexobj, arrays)) else "iuf"):
+            raise InputError(
+                f"the {what} of FunctionLaw answers with numbers of type {found.dtype} for H of "
+                f"type {arrays[0].dtype}; real H must give real numbers"
+            )
         return found
+
+
+def _unwritable(array: Floats) -> Floats:
+    """The same numbers, not to be written."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
 
 
 def _volume(H: Floats, finite: bool) -> tuple[Floats, Floats]:
@@ -293,8 +312,8 @@ class Secant:
 
 def _answers(law: FunctionLaw) -> None:
     """Refuses a function that does not answer with stress at rest, or cannot be differentiated."""
-    rest = np.zeros((2, 3, 3))  # without the volume: kappa may be infinite
-    law._asked("stress", law.function, rest)
+    rest = np.zeros((2, 3, 3))
+    law.shape_stress(rest)  # not with that of the volume: kappa may be infinite
     try:
         slope = law.shape_slope(rest, np.tile(np.diag([1.0, 0.5, 0.2]), (2, 1, 1)))
     except InputError as error:
@@ -304,8 +323,7 @@ def _answers(law: FunctionLaw) -> None:
             f"the derivative of FunctionLaw cannot be taken ({error.__cause__ or error}); give "
             "derivative=a function of (H, dH), or 'differences'"
         ) from error
-    if law.stored is not None:
-        law._asked("energy", law.stored, rest)
+    law.shape_energy(rest)
     if not (np.isfinite(slope).all() and np.any(slope)):
         raise InputError(
             "the derivative of FunctionLaw at rest is zero or not finite: a complex step needs a "

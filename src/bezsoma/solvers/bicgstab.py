@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from bezsoma.arrays import Floats
@@ -59,7 +61,8 @@ def _run(
     rho, alpha, omega = 1.0, 1.0, 1.0
     for applied in range(0, most, 2):
         before, rho = rho, dot(shadow, r)
-        if abs(rho) < 1e-14 * length(shadow) * length(r) or omega == 0:
+        small = abs(rho) < 1e-14 * length(shadow) * length(r)
+        if small or omega == 0 or not math.isfinite(rho):  # a law may answer with no numbers
             return applied
         beta = 0.0 if applied == 0 else rho / before * (alpha / omega)
         p -= omega * v

@@ -57,6 +57,14 @@ class Kept:
         self.least = min(self.least, iterations / digits)
         self.lost += iterations - self.least * digits
 
+    def failed(self) -> None:
+        """Hears that a solve came to nothing: whatever the next costs, it is built anew for it.
+
+        Else one that was built at a state on no way to balance would stay, with nothing better to
+        be measured against.
+        """
+        self.lost = math.inf
+
     def at(self, x: Floats) -> None:
         """Hears that the tangent at x (n,) comes next."""
         if self.lost > COST:

@@ -341,7 +341,7 @@ def _solution(
     pull = form.pull(x) - equations.applied(u, reached.fraction)
     in_balance = [each for each in reached.path if each.fraction <= reached.fraction]
     history = tuple(iteration.residual for iteration in reached.path)
-    path = _with_what_is_turned(equations, u, reached.path)
+    folded = inside_out(net, equations.body.material_of_region, u)
     return Solution(
         body_at(equations.body, reached.fraction),
         displacement,
@@ -355,15 +355,13 @@ def _solution(
         free=int(len(form.system.held) - form.system.held.sum()),
         timings=timings,
         pressure=form.pressure(x),
-        path=path,
+        advice=folded,
+        path=_with_event(reached.path, folded),
     )
 
 
-def _with_what_is_turned(
-    equations: NonlinearEquations, u: Floats, path: tuple[Iteration, ...]
-) -> tuple[Iteration, ...]:
-    """The path, its last iteration with what is turned inside out at u, if anything is."""
-    said = inside_out(equations.net, equations.body.material_of_region, u)
+def _with_event(path: tuple[Iteration, ...], said: str) -> tuple[Iteration, ...]:
+    """The path, its last iteration with one event more, if there is something to say."""
     if not said or not path:
         return path
     return (*path[:-1], replace(path[-1], events=(*path[-1].events, said)))

@@ -48,8 +48,10 @@ class Solution:
     continuous Field, or one that breaks between regions. `level` is a sentence about what its
     mean follows from: the equations, or, where they leave a constant open, the choice of zero.
     `held_tets` counts tets all four vertices of which are prescribed (see `unlocked`). `advice`
-    is what another form would do better; often nothing. Where the body is not linear, `path` has
-    every iteration of the load steps.
+    is what another form would do better, or where the tissue is turned inside out between the
+    points at which its law was asked, so that the answer cannot be trusted there; mostly nothing,
+    and shown wherever the solution is. Where the body is not linear, `path` has every iteration of
+    the load steps.
 
     A solution can be pickled where the functions in its body can: those of a module, no lambdas.
     """
@@ -72,10 +74,11 @@ class Solution:
     path: tuple[Iteration, ...] = ()
 
     def __repr__(self) -> str:
+        advice = f", advice={self.advice!r}" if self.advice else ""
         return (
             f"Solution(degree={self.net.degree}, unknowns={3 * self.net.count}, "
             f"method={self.method!r}, energy={self.energy:.6g} N mm, "
-            f"largest_displacement={self.largest_displacement:.6g} mm)"
+            f"largest_displacement={self.largest_displacement:.6g} mm{advice})"
         )
 
     @property
@@ -198,11 +201,13 @@ class Solution:
         }
 
     def _of_pressure(self) -> dict[str, Any]:
-        """What the mixed form adds to the summary."""
+        """What the mixed form adds to the summary, and advice."""
+        advice = {"advice": self.advice} if self.advice else {}
         if self.pressure is None:
-            return {"advice": self.advice} if self.advice else {}
+            return advice
         low, high = _range(self.pressure)
         return {
+            **advice,
             "pressure_degree": self.pressure.degree,
             "pressure_level": self.level,
             "pressure_range": [low, high],

@@ -93,7 +93,7 @@ class Applied:
         try:
             x, count, event = self._solved(scaled, rtol)
         except NotConverged as failure:
-            self.precondition.learn(MOST_ITERATIONS, rtol)
+            self.precondition.failed()
             raise Breakdown(str(failure)) from failure
         self.precondition.learn(count, rtol)
         return Correction(x.ravel() * size, count, event)
