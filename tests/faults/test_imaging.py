@@ -255,7 +255,9 @@ def test_what_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
     point = {"A": np.zeros(3)}
     refused(["end in"], write_landmarks, tmp_path / "a.json", point)
     refused(["no folder"], write_landmarks, tmp_path / "x" / "a.mrk.json", point)
-    refused(["0 to 3", "there are 3"], write_surface, tmp_path / "a.stl", np.zeros((3, 3)), [[0, 1, 3]])
+    refused(
+        ["0 to 3", "there are 3"], write_surface, tmp_path / "a.stl", np.zeros((3, 3)), [[0, 1, 3]]
+    )
     refused(["float64"], write_volume, tmp_path / "a.nrrd", np.zeros((2, 2, 2)), PLAIN)
     assert list(tmp_path.iterdir()) == []
     write_landmarks(tmp_path / "a.mrk.json", point)
