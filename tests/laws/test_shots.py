@@ -17,7 +17,7 @@ from bezsoma.mesh import ControlNet, Field, TetMesh, block
 from bezsoma.view import Shot, convergence_picture, film, movie, picture, side_by_side, window
 from bezsoma.view.camera import Camera, around, axes, fitted, turned
 from bezsoma.view.film import angles, shares
-from bezsoma.view.overlays import Screen, control_net, wireframe
+from bezsoma.view.overlays import Screen, control_net, net_points, wireframe
 from bezsoma.view.pieces import clipped
 from bezsoma.view.sections import Section
 from bezsoma.view.shot import bar_of, panel
@@ -129,6 +129,21 @@ def test_the_control_net_is_drawn_at_the_controls_and_not_on_the_surface() -> No
     assert np.abs(strokes.dots - value).max(axis=1).min() > 1
     screen = Screen.of(camera, [displaced(mesh, mesh.boundary, shot.displacement, 0.01)])
     assert len(control_net(shot.subject, screen).dots) < ControlNet(mesh, 2).count  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("carried", [True, False])
+def test_the_control_net_of_what_was_cut_away_is_gone(carried: bool) -> None:
+    mesh = block((20.0, 6.0, 6.0), (2, 2, 1))
+    moved = field(mesh, 2, lambda x: np.c_[0 * x[:, 0], 0 * x[:, 0] + 4, x[:, 0] ** 2 / 40])
+    y = "y=3" if carried else "y=7"  # the same cut: all goes 4 mm to the back
+    shot = Shot(mesh, displacement=moved, net=True, plane=y, carried=carried).checked("")
+    camera = fitted("three-quarter", shot.subject.points(), SMALL)
+    (strokes,) = shot.seen(camera).strokes
+    drawn, points = strokes.dots, net_points(shot.subject)[0]
+    assert drawn is not None and len(drawn)
+    behind = camera.pixels(points[points[:, 1] >= 7 - 1e-9])
+    off = np.abs(drawn[:, None] - behind[None]).max(axis=2).min(axis=1)
+    assert off.max() < 1e-9  # each dot is a control of what is left
 
 
 def test_what_is_translucent_lets_through_what_lies_behind() -> None:

@@ -64,15 +64,16 @@ def wireframe(subject: Subject, screen: Screen, kept: Bools | None = None) -> St
     return Strokes(segments, "before", BEFORE, width=1.0)
 
 
-def control_net(subject: Subject, screen: Screen) -> Strokes:
+def control_net(subject: Subject, screen: Screen, whole: Bools | None = None) -> Strokes:
     """The control net of the displaced surface: controls as dots, joined to their neighbours.
 
     A control is no point of the surface, except at a vertex; the surface lies in the convex hull
     of the controls of each facet. The net of a facet is drawn whole where any of it is seen: it
-    winds about the surface, which would else cut it to pieces.
+    winds about the surface, which would else cut it to pieces. Of a body cut open only those
+    facets (f,) have one that are `whole`.
     """
     points, numbers = net_points(subject)
-    kept = _faced(subject, screen)
+    kept = _faced(subject, screen) & (True if whole is None else whole)
     degree = 1 if subject.displacement is None else degree_of(subject.displacement)
     lines = numbers[kept][:, small_triangles(degree)][..., np.array(SIDES)].reshape(-1, 2)
     ends = np.unique(np.sort(lines, axis=1), axis=0)

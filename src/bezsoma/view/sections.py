@@ -8,7 +8,7 @@ from math import ceil, sqrt
 
 import numpy as np
 
-from bezsoma.arrays import Bools, Floats
+from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.bernstein import domain_points
 from bezsoma.errors import InputError
 from bezsoma.mesh import BrokenField, Field, TetMesh
@@ -18,7 +18,7 @@ from bezsoma.view.camera import Camera
 from bezsoma.view.lattice import corners_of
 from bezsoma.view.numbers import Measure, measured
 from bezsoma.view.pieces import Drawn, Pieces, clipped, refined
-from bezsoma.view.restriction import AnyField, on_same_mesh
+from bezsoma.view.restriction import AnyField, controls_on, on_same_mesh, values_at
 from bezsoma.view.surfaces import Surface
 
 _TRIANGLES = 40_000
@@ -27,6 +27,8 @@ _MOST_PARTS = 8
 """So many parts an edge suffice for that, however few the tets are."""
 _EDGE_ON = 0.1
 """A plane this nearly along the line of sight shows no face."""
+_ROUNDING = 1e-12
+"""A corner this far before the plane is in it, of the body's size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +72,15 @@ class Section:
     def kept(self) -> Bools:
         """Which vertices (v,) lay behind the plane before the move."""
         return np.asarray(self.plane.heights(self.mesh.points) <= 0)
+
+    def keeps(self, facets: Ints) -> Bools:
+        """Which facets (f, 3) stay whole, by where their corners are drawn."""
+        places = self.mesh.points[facets]
+        if self.displacement is not None and not self.carried:
+            controls = controls_on(self.mesh, self.displacement, facets)
+            places = places + values_at(self.displacement.degree, controls, np.eye(3))
+        heights = self.plane.heights(places.reshape(-1, 3)).reshape(-1, 3)
+        return np.asarray((heights <= _ROUNDING * np.ptp(self.mesh.points)).all(axis=1))
 
     def face(
         self, colour: AnyField | None, measure: Measure | None, wires: bool

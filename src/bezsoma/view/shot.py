@@ -164,7 +164,8 @@ class Shot:
             strokes.append(wireframe(self.subject, Screen.of(camera, [old]), kept))
         if self.net:
             screen = Screen.of(camera, [part.surface for part in solid])
-            strokes.append(control_net(self.subject, screen))
+            whole = None if section is None else section.keeps(self.subject.facets)
+            strokes.append(control_net(self.subject, screen, whole))
         return tuple(strokes)
 
 
