@@ -208,6 +208,16 @@ def test_a_vector_lacks_what_its_components_do(law: object, how: dict[str, Any])
     assert 0.5 < found.size / max(float(np.linalg.norm(true)), floor) < 2
 
 
+def test_what_a_loose_solve_leaves_counts_by_the_dual() -> None:
+    """A correction that is a fifth too short tells nearly the same error of a goal."""
+    solution = solve(pressed(2, LinearElastic(E=1.0, nu=0.3)))
+    whole, short = raised(solution), raised(solution)
+    for each, full in ((short.between, whole.between), (short, whole)):
+        vars(each)["step"] = 0.8 * full.step
+    told, again = (goal_estimate(solution, TOP, richer=each).error for each in (whole, short))
+    assert again == pytest.approx(told, rel=0.03)
+
+
 def test_a_patch_smaller_than_the_tets_has_a_dual_that_comes_slowly() -> None:
     """The product counts the dual's own rest: by the other rate it were 0.62 of it."""
     law, goal = LinearElastic(E=1.0, nu=0.3), replace(TOP, radius=0.15)

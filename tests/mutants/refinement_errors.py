@@ -35,11 +35,11 @@ REFINING = (
         ),
     ),
     Mutant(
-        "components of a mean that forget what the loose solve left",
+        "a goal that forgets what the loose solve left",
         f"{REFINEMENT}/estimates.py",
         'change = np.einsum("i,i->", load, of.correction) + np.einsum("i,i->", dual, of.left)',
         'change = np.einsum("i,i->", load, of.correction)',
-        ("tests/laws/test_estimates.py::test_a_vector_lacks_what_its_components_do",),
+        ("tests/laws/test_estimates.py::test_what_a_loose_solve_leaves_counts_by_the_dual",),
     ),
     Mutant(
         "a dual of the solution's degree that is as loose as the others",
