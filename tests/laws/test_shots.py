@@ -269,6 +269,8 @@ def test_the_viewer_walks_around_at_one_scale_and_up_stays_up() -> None:
     assert np.allclose(turned(axes("front"), 180), axes("back"), atol=1e-12)
     frames = [turned(axes("three-quarter"), angle) for angle in angles(360, 12)]
     assert all(np.isclose(np.linalg.det(frame), 1) for frame in frames)
+    tilts = np.array([frame[:, 2] for frame in frames])  # of the patient's up: no roll, one height
+    assert np.allclose(tilts, tilts[0], atol=1e-12) and np.allclose(tilts[:, 0], 0, atol=1e-12)
     points = bar().points
     cameras = around(frames, points, SMALL)
     assert len({camera.scale for camera in cameras}) == 1

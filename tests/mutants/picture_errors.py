@@ -90,8 +90,8 @@ PICTURES = (
     Mutant(
         "the viewer walks the other way around",
         "src/bezsoma/view/camera.py",
-        "np.stack([cos * right - sin * towards, up, sin * right + cos * towards])",
-        "np.stack([cos * right + sin * towards, up, cos * towards - sin * right])",
+        "cos * frame + sin * np.cross(axis, frame)",
+        "cos * frame - sin * np.cross(axis, frame)",
         ("src/bezsoma/view/camera.py",),
     ),
     Mutant(

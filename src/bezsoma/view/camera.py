@@ -111,14 +111,18 @@ def axes(view: str) -> Floats:
 def turned(frame: Floats, degrees: float) -> Floats:
     """The axes (3, 3) of a viewer who walked to the right around what is seen, by an angle.
 
-    Up stays up. A quarter of the way round from the front is the patient's left:
+    The axis is that of the patient's which is nearest to up, so what stands upright stays so, and
+    who looked down a little looks down from everywhere. A quarter of the way round from the front
+    is the patient's left:
 
     >>> bool(np.allclose(turned(axes("front"), 90.0), axes("left")))
     True
     """
     cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    right, up, towards = frame
-    return frozen(np.stack([cos * right - sin * towards, up, sin * right + cos * towards]))
+    nearest = int(np.abs(frame[1]).argmax())
+    axis = np.sign(frame[1, nearest]) * np.eye(3)[nearest]
+    along = np.outer(frame @ axis, axis)
+    return frozen(cos * frame + sin * np.cross(axis, frame) + (1 - cos) * along)
 
 
 def around(
