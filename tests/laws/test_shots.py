@@ -20,6 +20,7 @@ from bezsoma.view.film import angles, shares
 from bezsoma.view.overlays import Screen, control_net, net_points, wireframe
 from bezsoma.view.pieces import clipped
 from bezsoma.view.sections import Section
+from bezsoma.view.sheet import gif
 from bezsoma.view.shot import bar_of, panel
 from bezsoma.view.surfaces import displaced
 
@@ -278,6 +279,14 @@ def test_the_viewer_walks_around_at_one_scale_and_up_stays_up() -> None:
     assert (landed > 0).all() and (landed < np.array(SMALL)).all()
     assert shares(4)[0] == 0 and max(shares(36)) == 1
     assert max(angles(40.0, 8)) == 20 and min(angles(40.0, 8)) == -20
+
+
+def test_few_frames_all_have_their_colours() -> None:
+    plain = [np.full((8, 8, 3), 255 * each, np.uint8) for each in np.eye(3, dtype=np.uint8)]
+    with Image.open(io.BytesIO(gif(plain, 0.1))) as shown:
+        for number, frame in enumerate(plain):
+            shown.seek(number)
+            assert np.abs(np.asarray(shown.convert("RGB"), float) - frame).max() < 8
 
 
 def test_a_film_that_cannot_be_made_says_why() -> None:

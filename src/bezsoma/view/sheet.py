@@ -347,7 +347,7 @@ def gif(frames: Sequence[Bytes], seconds: float) -> bytes:
     All frames share 256 colours, chosen from six of them: a palette of its own for each would
     flicker.
     """
-    chosen = [frames[k * (len(frames) - 1) // 5] for k in range(min(6, len(frames)))]
+    chosen = [frames[k] for k in np.linspace(0, len(frames) - 1, min(6, len(frames))).astype(int)]
     palette = Image.fromarray(np.concatenate(chosen)).quantize(256, Image.Quantize.MEDIANCUT)
     images = [
         Image.fromarray(each).quantize(palette=palette, dither=Image.Dither.NONE) for each in frames
