@@ -185,6 +185,8 @@ def test_a_stopped_run_goes_on_and_gives_the_same_bits(
         with pytest.raises(KeyboardInterrupt):
             run_model(ct, halted, COARSE)
     assert set(contents(halted)) == {RECORD, *building.FILES["labels"]}
+    (halted / ".mesh.killed").mkdir()  # what a run leaves that cannot clean up after itself
+    (halted / ".mesh.killed" / "mesh.npz").write_bytes(b"half")
     again = run_model(ct, halted, COARSE)
     assert again.kept == ("labels",)
     assert contents(halted) == contents(whole)

@@ -103,6 +103,8 @@ class ModelFolder:
     def fill(self, stage: str, key: str, write: Callable[[Path], dict[str, Any]]) -> dict[str, Any]:
         """Have a stage write its files into a folder; keep them, and what it says of itself."""
         with written(self.place):
+            for left in self.place.glob(f".{stage}.*"):  # of a run that was killed
+                shutil.rmtree(left, ignore_errors=True)
             partial = Path(tempfile.mkdtemp(dir=self.place, prefix=f".{stage}."))
             try:
                 said = write(partial)
