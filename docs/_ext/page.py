@@ -37,6 +37,7 @@ FENCE = re.compile(r"^```(\w+)(?: (\S.*?))?\n(.*?)^```$", re.MULTILINE | re.DOTA
 COPIED = ("src", "tests", "pyproject.toml")
 DEV = """#!/bin/sh
 shift
+unset BEZSOMA_DATA_REQUIRED # no data lie beside the copy
 PYTHONPATH=tests exec {python} -m house.apart "$PWD/src" -q -p no:cacheprovider "$@"
 """
 
