@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 import errno
+import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
@@ -37,6 +40,7 @@ from bezsoma.imaging import (
 from bezsoma.imaging.meaning import AIR, BONE, MANDIBLE, SOFT
 from bezsoma.model import ModelSettings, building, read_settings, run_model
 from bezsoma.model.folder import RECORD, source_of
+from bezsoma.model.lock import locked
 
 
 def refused(words: list[str], call: Callable[..., Any], *given: Any, **named: Any) -> None:
@@ -194,6 +198,59 @@ def test_a_stopped_run_goes_on_and_gives_the_same_bits(
     (whole / "mesh.npz").unlink()
     assert run_model(ct, whole, COARSE).kept == ("labels", "case")
     assert contents(halted) == contents(whole)
+
+
+def test_a_run_that_is_killed_amid_a_swap_is_made_good(
+    ct: Path, tmp_path: Path, fast: pytest.MonkeyPatch
+) -> None:
+    """What the old mesh made is gone before the new one stands there; the next run finishes."""
+    other = replace(COARSE, domain=DomainSettings(above=12))
+    place, fresh = tmp_path / "m", tmp_path / "fresh"
+    run_model(ct, place, COARSE)
+    run_model(ct, fresh, other)
+    old = contents(place)
+    move = Path.replace
+
+    def stopped(path: Path, to: Path) -> Path:
+        if to == place / "mesh.npz":
+            raise KeyboardInterrupt
+        return move(path, to)
+
+    with fast.context() as broken:
+        broken.setattr(Path, "replace", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            run_model(ct, place, other, overwrite=True)
+    left = {path.name for path in place.iterdir() if path.is_file()}
+    assert left == set(old) - set(building.FILES["case"])
+    assert (place / "mesh.npz").read_bytes() == old["mesh.npz"] != (fresh / "mesh.npz").read_bytes()
+    assert run_model(ct, place, other).kept == ("labels", "mesh")
+    assert contents(place) == contents(fresh)
+
+
+def test_one_run_at_a_time_works_in_a_folder(
+    ct: Path, tmp_path: Path, fast: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "m"
+    with locked(place):
+        mine = f"another run (process {os.getpid()})"
+        refused([mine, str(place), "-o"], run_model, ct, place, COARSE)
+        assert not place.exists()
+        run_model(ct, tmp_path / "n", COARSE)
+    assert {path.name for path in tmp_path.iterdir()} == {"n"}
+    hold = f"""
+from bezsoma.model.lock import locked, Path
+with locked(Path({str(place)!r})):
+    print("held", flush=True)
+    input()
+"""
+    pipe = subprocess.PIPE
+    with subprocess.Popen([sys.executable, "-c", hold], stdin=pipe, stdout=pipe) as other:
+        assert other.stdout is not None and other.stdout.readline() == b"held\n"
+        refused([f"process {other.pid}"], run_model, ct, place, COARSE)
+        other.kill()
+    assert (tmp_path / ".m.lock").read_text() == f"{other.pid}\n"
+    assert run_model(ct, place, COARSE).kept == ()
+    assert {path.name for path in tmp_path.iterdir()} == {"m", "n"}
 
 
 def test_no_file_of_a_model_says_who_it_is(tmp_path: Path, fast: pytest.MonkeyPatch) -> None:

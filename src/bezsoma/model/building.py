@@ -88,8 +88,9 @@ def run_model(
     """Make the model of a CT (a file or a DICOM folder) in a folder, stage by stage.
 
     Run again after a stop, it goes on with the first stage that is not done; each stage appears
-    whole or not at all. The same CT, settings and version give the same bits. A `segmentation`
-    with masks named bone, mandible or skin takes the place of what the image would give.
+    whole or not at all, and one run at a time works in a folder. The same CT, settings and version
+    give the same bits. A `segmentation` with masks named bone, mandible or skin takes the place of
+    what the image would give.
     """
     settings = ModelSettings() if settings is None else settings
     ct = path_given(ct, "run_model(ct, folder)")
@@ -102,7 +103,19 @@ def run_model(
         )
     progress("look", None, f"at {ct.name} and the folder")
     source = source_of(ct)
-    place = ModelFolder.at(folder, source, overwrite=overwrite)
+    with ModelFolder.at(folder, source, overwrite=overwrite) as place:
+        return _made(ct, given, place, settings, source, progress)
+
+
+def _made(
+    ct: Path,
+    given: Path | None,
+    place: ModelFolder,
+    settings: ModelSettings,
+    source: str,
+    progress: Progress,
+) -> Model:
+    """The model, stage by stage, in a folder that no other run uses."""
     stated = settings.stated()
     drawn = None if given is None else source_of(given)
     first = key_of(source, stated["labels"], settings.series, drawn)
@@ -114,12 +127,12 @@ def run_model(
         ("case", third, lambda at: _case(at, place, settings, progress)),
     )
     kept = []
-    for stage, key, write in stages:
+    for number, (stage, key, write) in enumerate(stages):
         if place.done(stage, FILES[stage], key):
             kept.append(stage)
             progress(stage, 1.0, "kept from an earlier run")
         else:
-            place.fill(stage, key, write)
+            place.fill(stage, key, write, [later for later, _, _ in stages[number + 1 :]])
     notes = (*place.said("labels")["notes"], *place.said("mesh")["notes"])
     return Model(place.place, notes, place.said("mesh")["report"], tuple(kept))
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The folder of a model: what stage was done with what, so that a run goes on where one ended.
 
-A stage fills a hidden folder, whose files then take their places one after the other; last,
-`model.json` tells of them. Whatever stops a run leaves the stages before it and no part of the one
-under way.
+A stage fills a hidden folder. When that is whole, `model.json` says so, and its files take their
+places one after the other, those of later stages, which no longer fit, going first. Whatever stops
+a run before leaves no part of the stage under way; what stops it amid these steps is made good by
+the next run, which finishes them.
 """
 
 from __future__ import annotations
@@ -14,7 +15,8 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,11 +24,14 @@ from typing import Any
 from bezsoma import __version__
 from bezsoma.errors import InputError
 from bezsoma.mesh.whole import write_whole
+from bezsoma.model.lock import locked
 from bezsoma.results.folder import written
 
 RECORD = "model.json"
 FORMAT = "bezsoma model 1"
 """The mark in model.json by which a folder is known to be one of ours."""
+PENDING = "pending"
+"""What model.json says while the files of a stage take their places."""
 ROOM = 300_000_000
 """Bytes that have to be free before a run starts."""
 
@@ -40,13 +45,21 @@ class ModelFolder:
     record: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
-    def at(cls, path: Path | str, source: str, *, overwrite: bool) -> ModelFolder:
-        """The folder, made if need be; `source` says of what picture its model is."""
+    @contextmanager
+    def at(cls, path: Path | str, source: str, *, overwrite: bool) -> Iterator[ModelFolder]:
+        """The folder, made if need be, and for this run alone; `source`: of what picture it is."""
         place = Path(os.path.abspath(path))
         if not place.parent.is_dir():
             raise InputError(f"{str(path)!r}: there is no folder {str(place.parent)!r}; make it")
         if place.is_symlink() or (place.exists() and not place.is_dir()):
             raise InputError(f"{str(path)!r} is no folder; choose another one with -o")
+        with ExitStack() as held:
+            with written(place):
+                held.enter_context(locked(place))
+            yield cls._entered(path, place, source, overwrite)
+
+    @classmethod
+    def _entered(cls, path: Path | str, place: Path, source: str, overwrite: bool) -> ModelFolder:
         record = _record(place)
         if record is None and place.exists() and any(place.iterdir()):
             raise InputError(
@@ -58,13 +71,14 @@ class ModelFolder:
                 f"{str(path)!r} holds the model of another picture; choose another folder with -o, "
                 "or replace it with --overwrite"
             )
-        folder = cls(place, overwrite, record or {})
-        if not record or record["source"] != source:
-            known = {"stages": record["stages"]} if record else {"stages": {}}
-            folder.record = {"format": FORMAT, "source": source, **known}
+        folder = cls(place, overwrite, record or {"format": FORMAT, "source": source, "stages": {}})
         folder._check_room()
         with written(place):
             place.mkdir(exist_ok=True)
+            if PENDING in folder.record:
+                folder._settle()
+            folder._check_untouched()
+            folder.record["source"] = source
             folder._save()
         return folder
 
@@ -82,13 +96,6 @@ class ModelFolder:
         names = list(names)
         if known is None:
             return False
-        for name, sum_ in known["files"].items():
-            path = self.place / name
-            if path.exists() and hashed([path]) != sum_:
-                raise InputError(
-                    f"{str(path)!r} was changed since it was made; move it elsewhere, and a new "
-                    "one will be made"
-                )
         whole = all((self.place / name).exists() for name in names)
         if whole and known["key"] == key:
             return True
@@ -100,23 +107,67 @@ class ModelFolder:
             )
         return False
 
-    def fill(self, stage: str, key: str, write: Callable[[Path], dict[str, Any]]) -> dict[str, Any]:
-        """Have a stage write its files into a folder; keep them, and what it says of itself."""
+    def _check_untouched(self) -> None:
+        """Refuses files that somebody edited, before anything is made anew."""
+        for known in self.record["stages"].values():
+            for name, sum_ in known["files"].items():
+                path = self.place / name
+                if path.exists() and hashed([path]) != sum_:
+                    raise InputError(
+                        f"{str(path)!r} was changed since it was made; move it elsewhere, and a "
+                        "new one will be made"
+                    )
+
+    def fill(
+        self,
+        stage: str,
+        key: str,
+        write: Callable[[Path], dict[str, Any]],
+        later: Iterable[str] = (),
+    ) -> None:
+        """Have a stage write its files into a folder, and keep them with what it says of itself.
+
+        If they are made with another key than before, what stages `later` made of them goes.
+        """
         with written(self.place):
             for left in self.place.glob(f".{stage}.*"):  # of a run that was killed
                 shutil.rmtree(left, ignore_errors=True)
             partial = Path(tempfile.mkdtemp(dir=self.place, prefix=f".{stage}."))
             try:
                 said = write(partial)
-                files = sorted(partial.iterdir())
-                sums = {path.name: hashed([path]) for path in files}
-                for path in files:
-                    path.replace(self.place / path.name)
-            finally:
+                sums = {path.name: hashed([path]) for path in sorted(partial.iterdir())}
+                known = {"key": key, "files": sums, "said": said}
+                self._announce(stage, partial.name, known, later)
+            except BaseException:
                 shutil.rmtree(partial, ignore_errors=True)
-            self.record["stages"][stage] = {"key": key, "files": sums, "said": said}
-            self._save()
-        return said
+                raise
+            self._settle()
+
+    def _announce(
+        self, stage: str, partial: str, known: dict[str, Any], later: Iterable[str]
+    ) -> None:
+        """Have the record say which files are about to take their places, and what stages go."""
+        before = self.record["stages"].get(stage)
+        stale = before is None or before["key"] != known["key"]
+        pending = {"stage": stage, "folder": partial, "known": known, "gone": list(later) * stale}
+        self.record = {**self.record, PENDING: pending}
+        self._save()
+
+    def _settle(self) -> None:
+        """Let the files that were announced take their places, or the rest of them."""
+        stages, pending = dict(self.record["stages"]), self.record[PENDING]
+        partial, files = self.place / pending["folder"], pending["known"]["files"]
+        for stage in pending["gone"]:
+            for name in stages.pop(stage, {"files": ()})["files"]:
+                (self.place / name).unlink(missing_ok=True)
+        for name in files:
+            if (partial / name).exists():
+                (partial / name).replace(self.place / name)
+        stages[pending["stage"]] = pending["known"]
+        rest = {key: value for key, value in self.record.items() if key != PENDING}
+        self.record = {**rest, "stages": stages}
+        self._save()
+        shutil.rmtree(partial, ignore_errors=True)
 
     def said(self, stage: str) -> dict[str, Any]:
         """What a finished stage said of itself."""
