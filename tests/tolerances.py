@@ -55,9 +55,6 @@ DICE_TISSUE, DICE_JAW = 0.97, 0.95
 """Overlap of labels with the truth at voxel centres: soft tissue, and bone thicker than two voxels;
 the mandible, whose cuts from the skull are a matter of a voxel or two."""
 
-DICE_BONE_AT_2_MM = 0.95
-"""Of bone thicker than two voxels where these are 2 mm: no plate of the skull is much thicker."""
-
 SKIN_VOXELS = 0.3
 """Mean distance of the labelled skin from the true one, in voxels; a perfect rounding to voxels has
 0.2 to 0.25."""

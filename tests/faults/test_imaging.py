@@ -269,6 +269,7 @@ SETTINGS: dict[str, tuple[dict[str, Any], list[str]]] = {
     "negative": ({"thin": -1}, ["thin=-1"]),
     "window": ({"fat": (-30, -200)}, ["fat=", "below"]),
     "soft": ({"soft": 300}, ["below bone"]),
+    "fuller": ({"fuller": 0.5}, ["fuller=0.5", "1 to 2"]),
     "cavities": ({"cavities": "open"}, ["'apart' or 'tissue'"]),
 }
 
@@ -296,6 +297,16 @@ def test_heads_that_cannot_be_labelled(head: Volume) -> None:
     refused(["105 mm below", "chin is not in view"], labels, crown)
     air = head.with_values(np.full_like(head.values, -1000))
     refused(["0 cm3"], labels, air)
+
+
+def test_a_head_smaller_than_an_adult_s_is_told(head: Volume) -> None:
+    """Three quarters of an adult's: a child of one or two years, or a wrong scale."""
+    alike = LabelSettings(coarse=4)
+    frame = head.frame
+    small = Volume(head.values, Frame(0.75 * frame.spacing, 0.75 * frame.origin, frame.axes))
+    (note,) = (note for note in labels(small, alike).notes if "scale" in note)
+    assert note.startswith("LOOK: 14") and "child's" in note and "170 and more" in note
+    assert not any("scale" in note for note in labels(head, alike).notes)
 
 
 def test_seeds_and_segmentations_that_do_not_fit(head: Volume) -> None:

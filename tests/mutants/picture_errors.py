@@ -186,6 +186,13 @@ PICTURES = (
         LABELS,
     ),
     Mutant(
+        "the densest voxel nearby taken for bone where cortex fills none",
+        f"{IMAGING}/bone.py",
+        "np.float32(settings.fuller) * dense",
+        "np.float32(1) * dense",
+        (f"{IMAGING}/bone.py",),
+    ),
+    Mutant(
         "coarse voxels parted, the values between taken from the wrong end",
         f"{IMAGING}/volume.py",
         "np.float32(k / n) * step",
@@ -268,5 +275,19 @@ PICTURES = (
         'if whole and known["key"] == key:',
         "if whole:",
         ("tests/faults/test_model.py::test_what_stands_there_is_not_lost",),
+    ),
+    Mutant(
+        "two runs let into one folder",
+        "src/bezsoma/model/lock.py",
+        "fcntl.LOCK_EX | fcntl.LOCK_NB",
+        "fcntl.LOCK_SH | fcntl.LOCK_NB",
+        ("tests/faults/test_model.py::test_one_run_at_a_time_works_in_a_folder",),
+    ),
+    Mutant(
+        "the case of an old mesh left beside a new one",
+        "src/bezsoma/model/folder.py",
+        '"gone": list(later) * stale',
+        '"gone": []',
+        ("tests/faults/test_model.py::test_a_run_that_is_killed_amid_a_swap_is_made_good",),
     ),
 )

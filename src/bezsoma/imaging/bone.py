@@ -17,6 +17,8 @@ MARROW_HU = -250.0
 PEELS = 2
 """Layers of surface that may be too thin of bone to be bone: a plane cuts at most two voxels deep
 along an axis."""
+CORTEX = 90.0
+"""Per cent of a surface of bone beside which no voxel is denser than this head's cortex."""
 
 
 def noise(volume: Volume, inside: Bools) -> float:
@@ -55,31 +57,45 @@ def quietened(volume: Volume, level: float, settings: LabelSettings) -> Any:
 def bone(values: Any, inside: Bools, spacing: Floats, settings: LabelSettings) -> Bools:
     """Bone (z, y, x) inside the head.
 
-    Where `halfway`, a voxel at the surface stays only if it is denser than (soft + densest) / 2,
-    densest taken within `reach`: then more than half of it is bone.
+    Where `halfway`, a voxel at the surface stays only if it is denser than half-way between soft
+    tissue and the bone nearby: then more than half of it is bone.
     """
     found = (values > settings.bone) & inside
     if settings.halfway:
-        too_thin = values < level_between(values, 0.5, spacing, settings)
+        too_thin = values < level_between(values, 0.5, found, spacing, settings)
         for _ in range(PEELS):
             found &= ~(too_thin & ~ndimage.binary_erosion(found, border_value=1))
     found |= marrow(found, values, spacing, settings)
     return without_specks(found, settings.speck / float(np.prod(spacing)))
 
 
-def level_between(values: Any, part: float, spacing: Floats, settings: LabelSettings) -> Any:
-    """HU (z, y, x) that lie `part` of the way from `soft` to the densest within `reach`.
+def level_between(
+    values: Any, part: float, found: Bools, spacing: Floats, settings: LabelSettings
+) -> Any:
+    """HU (z, y, x) that lie `part` of the way from `soft` to the bone nearby.
 
-    At least two voxels far, since beside an edge no voxel need be full of bone.
+    That is as dense as its densest voxel within `reach`, two voxels at least, since beside an edge
+    no voxel need be full of bone. Where cortex is no wider than a voxel, none is: so it is up to
+    `fuller` times as dense, but for that no denser than this head's cortex, which is seen where
+    the surface of what was `found` is densest.
+
+    >>> plate = np.zeros((9, 9, 9))
+    >>> plate[4] = 800  # two thirds full of bone
+    >>> plate[4, :, :2] = 1200  # full
+    >>> level = level_between(plate, 0.5, plate > 0, np.ones(3), LabelSettings(soft=0))
+    >>> level[4, 4, [1, 6]].round().tolist(), level[0, 4, 6].tolist()
+    ([600.0, 520.0], 0.0)
     """
     reach = np.clip(np.rint(settings.reach / spacing[::-1]), 2, 4).astype(int)
-    densest = ndimage.maximum_filter(values, size=tuple((2 * reach + 1).tolist())).astype(
-        np.float32
-    )
-    densest -= np.float32(settings.soft)
-    densest *= np.float32(part)
-    densest += np.float32(settings.soft)
-    return densest
+    dense = ndimage.maximum_filter(values, size=tuple((2 * reach + 1).tolist())).astype(np.float32)
+    dense -= np.float32(settings.soft)
+    surface = found & ~ndimage.binary_erosion(found, border_value=1)
+    if surface.any():
+        cortex = np.float32(np.percentile(dense[surface], CORTEX))
+        np.maximum(dense, np.minimum(np.float32(settings.fuller) * dense, cortex), out=dense)
+    dense *= np.float32(part)
+    dense += np.float32(settings.soft)
+    return dense
 
 
 def marrow(found: Bools, values: Any, spacing: Floats, settings: LabelSettings) -> Bools:

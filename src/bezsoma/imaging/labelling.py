@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bezsoma.arrays import Bools, Ints
+from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.errors import InputError
 from bezsoma.imaging import bone as bones
 from bezsoma.imaging.head_mask import around_head, body, hollows
@@ -19,6 +19,9 @@ from bezsoma.imaging.volume import Frame, Grid, Volume
 
 FUSED = 3.0
 """mm: a bridge between jaw and skull wider than twice this is more than a touch."""
+GROWN = 170.0
+"""mm from the top of the skull to the lower border of the chin, bone to bone. In adults 180 to 235:
+about 15 less than from skin to skin, which is 195 to 250; at birth some 110, at two years 150."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +124,23 @@ def _jaw(
         notes.append(f"mandible and skull touch; cut at a bridge {2 * bridge:.3g} mm wide")
     if bridge > FUSED:
         notes.append("LOOK: that bridge is wide; a joint may be fused, or a cut in a wrong place")
+    notes += _small(found, jaw, fine.frame, settings)
     return jaw | (with_marrow(jaw, fine.values, fine.frame.spacing, settings) & ~found)
+
+
+def _small(found: Bools, jaw: Bools, frame: Frame, settings: LabelSettings) -> list[str]:
+    """A warning of a head that is no adult's; where `skull` is given its top may not be in view."""
+
+    def heights(mask: Bools) -> Floats:
+        return frame.points(np.argwhere(mask)[:, ::-1])[:, 2]
+
+    height = float(heights(found).max() - heights(jaw).min())
+    if height >= GROWN or settings.skull is not None:
+        return []
+    return [
+        f"LOOK: {height:.3g} mm from the top of the skull to the chin are a child's, or the scale "
+        f"is wrong (adults have {GROWN:g} and more)"
+    ]
 
 
 def _metal(part: Volume, solid: Bools, settings: LabelSettings) -> list[str]:

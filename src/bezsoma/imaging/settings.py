@@ -35,6 +35,9 @@ class LabelSettings:
     for all, dense bone becomes too thick, and a higher one loses thin bone."""
     reach: float = 1.6
     """mm: how far nearby is."""
+    fuller: float = 1.3
+    """How many times denser than the densest voxel nearby bone may be, where that is less than the
+    cortex of this head: a cortex no wider than a voxel fills none. 1: no denser."""
     coarse: float = 1.5
     """mm: larger voxels are parted, values between them taken as linear, before bone is looked for:
     cortex and the gaps of joints are no wider than they are. Labels are those at their centres."""
@@ -68,6 +71,8 @@ class LabelSettings:
             value = getattr(self, name)
             if not (np.isfinite(value) and 0 <= value <= 1000):
                 raise InputError(f"{name}={value}: a number from 0 to 1000 is needed")
+        if not 1 <= self.fuller <= 2:
+            raise InputError(f"fuller={self.fuller}: 1 to 2 times as dense can be")
         if not 0.3 <= self.coarse <= 1000:
             raise InputError(f"coarse={self.coarse}: 0.3 to 1000 mm can be")
         if not -1000 < self.skin < self.bone < self.metal:
