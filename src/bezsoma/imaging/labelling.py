@@ -103,7 +103,9 @@ def _bones(
     given = {name: on_fine(mask) for name, mask in masks.items()}
     found = given.get("bone")
     if found is None:
-        found = bones.bone(fine.values, on_fine(solid), fine.frame.spacing, settings)
+        whole = float(np.linalg.norm(spacing)) <= settings.plate  # some voxels are full of cortex
+        alike = replace(settings, fuller=1.0) if whole else settings
+        found = bones.bone(fine.values, on_fine(solid), fine.frame.spacing, alike)
     found = found | given.get("mandible", np.zeros_like(found))
     jaw = np.zeros_like(found)
     if settings.mandible:

@@ -38,6 +38,8 @@ class LabelSettings:
     fuller: float = 1.3
     """How many times denser than the densest voxel nearby bone may be, where that is less than the
     cortex of this head: a cortex no wider than a voxel fills none. 1: no denser."""
+    plate: float = 2.0
+    """mm: about how thick cortex is. Only voxels with a longer diagonal ask for `fuller`."""
     coarse: float = 1.5
     """mm: larger voxels are parted, values between them taken as linear, before bone is looked for:
     cortex and the gaps of joints are no wider than they are. Labels are those at their centres."""
@@ -67,7 +69,9 @@ class LabelSettings:
     """mm: a point in the bone of the skull, likewise."""
 
     def __post_init__(self) -> None:
-        for name in ("thin", "sealed", "marrow", "cortex", "speck", "reach", "quiet", "streaks"):
+        for name in (
+            "thin", "sealed", "marrow", "cortex", "plate", "speck", "reach", "quiet", "streaks"
+        ):  # fmt: skip
             value = getattr(self, name)
             if not (np.isfinite(value) and 0 <= value <= 1000):
                 raise InputError(f"{name}={value}: a number from 0 to 1000 is needed")
