@@ -21,7 +21,7 @@ from bezsoma.refinement.estimates import (
     vector_estimate,
 )
 from bezsoma.refinement.goals import Goal
-from bezsoma.refinement.raised import UP, Raised, raised
+from bezsoma.refinement.raised import Raised, raised, up
 from bezsoma.refinement.targets import AXES, around
 from bezsoma.solvers.solution import Solution
 
@@ -43,7 +43,7 @@ def estimated(
     table, start = case.file.error, perf_counter()
     if reason := _unwanted(table.estimate, solution):
         return {"left_out": reason}
-    progress("error", None, f"two degrees up, {len(probes)} probes")
+    progress("error", None, f"in a higher degree, {len(probes)} probes")
     try:
         richer = raised(solution, threads=case.file.solver.threads)
         energy = energy_estimate(solution, richer=richer)
@@ -66,7 +66,7 @@ def _unwanted(estimate: bool | None, solution: Solution) -> str:
     """Why nothing is estimated; nothing where it is."""
     if estimate is False:
         return "not asked for"
-    degree = solution.body.degree + UP
+    degree = solution.body.degree + up(solution.body.degree)
     if degree > HIGHEST_DEGREE:
         return f"it takes degree {degree}, and degrees up to {HIGHEST_DEGREE} are built"
     unknowns = 3 * ControlNet(solution.body.mesh, degree).count

@@ -68,23 +68,24 @@ def prescribed(body: Body, net: ControlNet) -> PrescribedControls:
     >>> known.mask.sum(axis=0).tolist() == [0, 0, len(known.of_support["bottom"][0])]
     True
     """
+    points = net.points  # formed at each call
     claims = [
-        _claim(support, place, body, net)
+        _claim(support, place, body, net, points)
         for support in body.supports
         for place in dict.fromkeys(support.places)
     ]
     for join in body.joins:
         if isinstance(join, Gap):
             claims = [_released(claim, join, net) for claim in claims]
-    return _settled(claims, body, net)
+    return _settled(claims, body, net, points)
 
 
-def _claim(support: Support, place: str, body: Body, net: ControlNet) -> Claim:
+def _claim(support: Support, place: str, body: Body, net: ControlNet, points: Floats) -> Claim:
     gradeds = [join for join in body.joins if isinstance(join, Graded) and join.over == place]
     bands_checked(gradeds, net)
     if not gradeds and support.degree is not None and support.degree <= 1:
         numbers = net.of_place(place)
-        values = support.displacement(net.points[numbers])
+        values = support.displacement(points[numbers])
     else:
         function = graded_displacement(support, place, body)
         numbers, values = net.interpolated_on(place, function)
@@ -112,9 +113,11 @@ def _released(claim: Claim, join: Gap, net: ControlNet) -> Claim:
     return replace(claim, numbers=claim.numbers[stays], values=claim.values[stays])
 
 
-def _settled(claims: list[Claim], body: Body, net: ControlNet) -> PrescribedControls:
+def _settled(
+    claims: list[Claim], body: Body, net: ControlNet, points: Floats
+) -> PrescribedControls:
     held = _precedence(claims, body)
-    _agreed(claims, held, net)
+    _agreed(claims, held, points)
     mask = np.zeros((net.count, 3), dtype=bool)
     values = np.zeros((net.count, 3))
     owned: dict[str, Bools] = {}
@@ -145,19 +148,17 @@ def _precedence(claims: list[Claim], body: Body) -> list[Bools]:
     return held
 
 
-def _agreed(claims: list[Claim], held: list[Bools], net: ControlNet) -> None:
+def _agreed(claims: list[Claim], held: list[Bools], points: Floats) -> None:
     """Refuse two claims that still prescribe different values at the same control."""
     largest = max((float(np.abs(claim.values).max(initial=0)) for claim in claims), default=0.0)
-    tolerance = TOLERANCE * max(largest, float(np.abs(net.points).max()))
+    tolerance = TOLERANCE * max(largest, float(np.abs(points).max()))
     for (one, holds), (other, holds_too) in combinations(zip(claims, held, strict=True), 2):
         shared, i, j = np.intersect1d(
             one.numbers, other.numbers, assume_unique=True, return_indices=True
         )
         apart = np.abs(one.values[i] - other.values[j]) * (holds[i] & holds_too[j])
         if (apart > tolerance).any():
-            raise InputError(
-                _disagreement(one, other, apart, apart > tolerance, net.points[shared])
-            )
+            raise InputError(_disagreement(one, other, apart, apart > tolerance, points[shared]))
 
 
 def _disagreement(one: Claim, other: Claim, apart: Floats, differ: Bools, points: Floats) -> str:

@@ -67,5 +67,5 @@ def interpolation_inside(degree: int, dim: int) -> Floats:
 
 def rows_applied(rows: Floats, values: Floats, closures: Ints | Int32s) -> Floats:
     """The rows (r, m) applied to the values (c, ...) on each closure (q, m): (r, q, ...)."""
-    local = values[closures.T]
+    local = np.take(values, closures.T, axis=0)  # quicker than values[closures.T]
     return (rows @ local.reshape(len(local), -1)).reshape(len(rows), *local.shape[1:])

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 
@@ -13,7 +14,7 @@ from bezsoma.arrays import Floats, frozen
 from bezsoma.refinement.goals import Goal, goal_checked
 from bezsoma.refinement.means import mean, weights
 from bezsoma.refinement.raised import Raised, raised
-from bezsoma.refinement.saturation import decay, limit, share
+from bezsoma.refinement.saturation import FIRST, decay, limit, share
 from bezsoma.refinement.singular import singularities
 from bezsoma.solvers.nonlinear import is_linear
 from bezsoma.solvers.solution import Solution
@@ -43,7 +44,7 @@ class GoalEstimate:
     """A mean displacement `value` [mm] and its estimated error [mm]: the truth is near their sum.
 
     `error` has a sign: true value minus `value`. `of_tet` (t,) mm is the part that each tet has in
-    it, with signs, as far as two degrees more see it; abs(of_tet) says where to refine. `product`
+    it, with signs, as far as the higher degree sees it; abs(of_tet) says where to refine. `product`
     [mm] is the product of the errors of the displacement and of the dual in the energy norm, beyond
     which the error cannot be. `warnings` and `seconds` are those of `EnergyEstimate`.
     """
@@ -94,19 +95,40 @@ def energy_estimate(
     """
     start = perf_counter()
     richer = raised(solution, threads=threads) if richer is None else richer
-    degree = solution.body.degree
-    rate = _rate(richer.between.gain, richer.gain, degree)
-    of_tet = richer.squares(richer.correction) / share(rate, degree, 2)
-    total, energy = float(of_tet.sum()), _stored(richer)
+    parts, total = richer.squares(richer.correction), richer.gain / _seen(_rate(richer), richer)
+    of_tet = parts * (total / parts.sum()) if total > 0 else parts
+    energy = _stored(richer)
     relative = math.sqrt(total / energy) if energy > 0 else (math.inf if total > 0 else 0.0)
     return EnergyEstimate(
         frozen(of_tet), total, relative, singularities(solution), perf_counter() - start
     )
 
 
-def _rate(one: float, two: float, degree: int) -> float:
+def _rate(richer: Raised) -> float:
+    """How fast the energy of the error falls with the degree."""
+    return FIRST if richer.by == 1 else _fall(richer.between.gain, richer.gain, richer)
+
+
+def _fall(one: float, two: float, richer: Raised) -> float:
     """How fast the energy of an error falls, from what one and two more degrees see of it."""
-    return decay(one / two, degree) if two > 0 else math.inf
+    return decay(one / two, richer.solution.body.degree) if two > 0 else math.inf
+
+
+def _seen(rate: float, richer: Raised) -> float:
+    """The part of an energy that the richer degree sees [-]."""
+    return share(rate, richer.solution.body.degree, richer.by)
+
+
+def _limit(changes: Sequence[float], rate: float, richer: Raised) -> float:
+    """Where a change ends that the richer degrees, one or two, make so large [mm]."""
+    if richer.by == 1:
+        return changes[0] / _seen(rate, richer)
+    return limit(changes[0], changes[1], rate, richer.solution.body.degree)
+
+
+def _degrees(richer: Raised) -> tuple[Raised, ...]:
+    """Those above the solution that tell its error, ascending."""
+    return (richer,) if richer.by == 1 else (richer.between, richer)
 
 
 def _stored(richer: Raised) -> float:
@@ -140,7 +162,7 @@ def vector_estimate(
     """The mean of the displacement over a place, all three components, and its error, mm.
 
     Three duals in the degree of the solution tell what its components lack, each within 1 % of the
-    product; one of two degrees more, in the direction of that, tells the product itself. That takes
+    product; one of the higher degree, in the direction of that, tells the product itself. That takes
     about 1.3 times as long as one goal.
 
     Args:
@@ -152,20 +174,19 @@ def vector_estimate(
     start = perf_counter()
     place = goal_checked(place, solution.body.mesh)
     richer = raised(solution, threads=threads) if richer is None else richer
-    goals, both = _axes(place), (richer.between, richer)
+    goals, above = _axes(place), _degrees(richer)
     value = np.array([mean(goal, solution.displacement) for goal in goals])
     owns = [richer.base.dual(_load(goal, richer.base)) for goal in goals]
     changes = np.array(
         [
-            [_change(_load(goal, of), of, of.elevated(own, richer.base)) for of in both]
+            [_change(_load(goal, of), of, of.elevated(own, richer.base)) for of in above]
             for goal, own in zip(goals, owns, strict=True)
         ]
     )
-    ways = (changes[:, 1], value, np.array([0.0, 0.0, 1.0]))
+    ways = (changes[:, -1], value, np.array([0.0, 0.0, 1.0]))
     along = replace(place, direction=next(way for way in ways if way.any()))
     judged, rate = _judged(along, richer, np.einsum("an,a->n", owns, along.direction), start)
-    degree = solution.body.degree
-    error = np.array([limit(first, second, rate, degree) for first, second in changes])
+    error = np.array([_limit(each, rate, richer) for each in changes])
     return VectorEstimate(frozen(value), frozen(error), judged)
 
 
@@ -180,22 +201,20 @@ def _judged(goal: Goal, richer: Raised, own: Floats, start: float) -> tuple[Goal
     An error is the product of two, and falls as fast as the two together: like a power of the
     degree that is the mean of theirs. A dual of a patch smaller than the tets is slower to come.
     """
-    solution, degree = richer.solution, richer.solution.body.degree
-    first, second = _duals(goal, richer, own)
-    dual = richer.square(second.sharper)
-    rates = (
-        _rate(richer.between.gain, richer.gain, degree),
-        _rate(richer.between.square(first.sharper), dual, degree),
-    )
+    solution, duals = richer.solution, _duals(goal, richer, own)
+    last = duals[-1]
+    slope = FIRST if richer.by == 1 else _fall(duals[0].energy, last.energy, richer)
+    rates = (_rate(richer), slope)
     energies = [
-        gain / share(rate, degree, 2) for gain, rate in zip((richer.gain, dual), rates, strict=True)
+        gain / _seen(rate, richer)
+        for gain, rate in zip((richer.gain, last.energy), rates, strict=True)
     ]
     rate = sum(rates) / 2
     found = GoalEstimate(
         goal,
         mean(goal, solution.displacement),
-        limit(first.change, second.change, rate, degree),
-        frozen(richer.product(richer.correction, second.sharper)),
+        _limit([each.change for each in duals], rate, richer),
+        frozen(richer.product(richer.correction, last.sharper)),
         2 * math.sqrt(math.prod(energies)),
         singularities(solution),
         perf_counter() - start,
@@ -205,25 +224,27 @@ def _judged(goal: Goal, richer: Raised, own: Floats, start: float) -> tuple[Goal
 
 @dataclass(frozen=True, eq=False)
 class _Degree:
-    """What a degree says of a goal: how it changes [mm], and what is added to its dual (n,)."""
+    """What a degree says of a goal: how it changes [mm], what is added to its dual (n,), N mm."""
 
     change: float
     sharper: Floats
+    energy: float
 
 
-def _duals(goal: Goal, richer: Raised, own: Floats) -> tuple[_Degree, _Degree]:
-    """What one and two degrees more say, the second starting from the first."""
-    base, between = richer.base, richer.between
-    first = _of_degree(goal, between, between.elevated(own, base), np.zeros_like(between.start))
-    guess = richer.elevated(first.sharper, between)
-    return first, _of_degree(goal, richer, richer.elevated(own, base), guess)
+def _duals(goal: Goal, richer: Raised, own: Floats) -> list[_Degree]:
+    """What the degrees above say, each starting from the one before."""
+    found: list[_Degree] = []
+    for of in _degrees(richer):
+        guess = of.elevated(found[-1].sharper, richer.between) if found else np.zeros_like(of.start)
+        found.append(_of_degree(goal, of, of.elevated(own, richer.base), guess))
+    return found
 
 
 def _of_degree(goal: Goal, of: Raised, coarse: Floats, guess: Floats) -> _Degree:
     """What a degree says of a goal."""
     load = _load(goal, of)
-    sharper = of.sharpened(load, coarse, guess)
-    return _Degree(_change(load, of, coarse + sharper), sharper)
+    sharper, energy = of.sharpened(load, coarse, guess)
+    return _Degree(_change(load, of, coarse + sharper), sharper, energy)
 
 
 def _change(load: Floats, of: Raised, dual: Floats) -> float:

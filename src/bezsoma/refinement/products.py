@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from bezsoma import bernstein
+from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.mixed_pointwise import MixedPointwise
 from bezsoma.equations.pointwise import Pointwise
@@ -16,38 +16,75 @@ from bezsoma.mechanics.laws import Law, MixedLaw
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.evaluation import gradient_controls, portions
 from bezsoma.mesh.field import Field
+from bezsoma.mesh.parts import owners
 from bezsoma.solvers.nonlinear_mixed import beside_pressure
 
 Product = Callable[[Floats, Floats], Floats]
 """a, b (n,) -> (t,) N mm, adding up to b . K a; see `Raised` for what n counts."""
 
 
-def linear_product(net: ControlNet, pressures: ControlNet | None, moduli: Floats) -> Product:
-    """Of a linear body, from gradients; moduli (regions, 3): lambda, mu, 1/kappa.
+def displacement_product(net: ControlNet, lame: Floats, threads: int = 0) -> Product:
+    """Of a linear body without pressures; lame (regions, 2): lambda and mu.
 
-        int T(a) : grad b - p_a div b - p_b div a - p_a p_b / kappa,  T = lam tr(H) I + mu (H + H^T)
+        int T(a) : grad b,  T = lam tr(H) I + mu (H + H^T)
 
-    Large displacements of which little is strain lose no digits, as in `MatrixFree.energy`. The
-    sum is the form's own:
+    The operator does it, on tets that share no control: what it gives then are the forces of each
+    tet alone. Their work is that of the whole:
 
     >>> from bezsoma.equations.matrix_free import MatrixFree
     >>> from bezsoma.mesh.solids import block
     >>> net = ControlNet(block(cells=2), 3)
     >>> a, b = np.sin(7 * net.points), np.cos(5 * net.points)
-    >>> work = linear_product(net, None, np.array([[0.6, 0.4, 0.0]]))(a.ravel(), b.ravel())
+    >>> work = displacement_product(net, np.array([[0.6, 0.4]]))(a.ravel(), b.ravel())
     >>> whole = float((b * (MatrixFree(net, np.array([[0.6, 0.4]])) @ a)).sum())
     >>> bool(abs(work.sum() - whole) < 1e-13 * abs(whole))
     True
+    """
+    mesh, columns, runs = net.mesh, *_by_entity(net)
+    size = len(columns)
+
+    def forces(local: Floats, tets: slice) -> Floats:
+        """Those of each tet alone (t, m, 3), the controls entity by entity as `local`'s."""
+        count = len(local)
+        first = (runs + size * np.arange(count)[:, None]).astype(np.int32)
+        corners, region = mesh.tets[tets], mesh.region[tets]
+        walk = _core.Walk(net.degree, first, np.arange(count), mesh.points, corners, region, moduli)
+        out = np.empty((count * size, 3, 1))
+        _core.MatrixFree(walk, threads, "").apply(local.reshape(-1, 3, 1), out)
+        return out.reshape(local.shape)
+
+    moduli = np.ascontiguousarray(lame, dtype=np.float64)
+
+    def product(a: Floats, b: Floats) -> Floats:
+        out = np.empty(len(mesh.tets))
+        for tets in portions(len(out), 6 * size):
+            numbers = np.take(net.of_tet[tets], columns, axis=1)
+            local = np.take(a.reshape(-1, 3), numbers, axis=0)
+            other = local if b is a else np.take(b.reshape(-1, 3), numbers, axis=0)
+            out[tets] = np.einsum("tmk,tmk->t", forces(local, tets), other)
+        return out
+
+    return product
+
+
+def _by_entity(net: ControlNet) -> tuple[Ints, Ints]:
+    """A tet's controls in the order of its entities (m,), and where each entity's begin (e,)."""
+    part, rank = owners(net.degree, 3)
+    columns = np.lexsort((rank, part))
+    return columns, np.flatnonzero(rank[columns] == 0)
+
+
+def linear_product(net: ControlNet, pressures: ControlNet, moduli: Floats) -> Product:
+    """Of a linear body with pressures, from gradients; moduli (regions, 3): lambda, mu, 1/kappa.
+
+    int T(a) : grad b - p_a div b - p_b div a - p_a p_b / kappa,  T = lam tr(H) I + mu (H + H^T)
     """
     mesh, degree = net.mesh, net.degree - 1
     mass = bernstein.mass(degree, degree, 3)
 
     def parts(x: Floats, tets: slice) -> tuple[Floats, Floats]:
         """grad u (t, m, 3, 3) and p (t, m), both of degree n - 1."""
-        u = Field(net, x[: 3 * net.count].reshape(-1, 3))
-        H = gradient_controls(u, tets)
-        if pressures is None:
-            return H, np.zeros(H.shape[:2])
+        H = gradient_controls(Field(net, x[: 3 * net.count].reshape(-1, 3)), tets)
         p = x[3 * net.count :][pressures.of_tet[tets]]
         up = bernstein.elevation(pressures.degree, 3, degree - pressures.degree)
         return H, p @ up.T
@@ -62,8 +99,7 @@ def linear_product(net: ControlNet, pressures: ControlNet | None, moduli: Floats
             T += (lam * trace - p)[..., None, None] * np.eye(3)
             T, flat = T.reshape(*p.shape, 9), G.reshape(*p.shape, 9)
             work = np.einsum("tmk,tmk->t", mass @ T, flat, optimize=True)
-            if pressures is not None:
-                work -= np.einsum("tm,tm->t", q @ mass, trace + soft * p)
+            work -= np.einsum("tm,tm->t", q @ mass, trace + soft * p)
             out[tets] = mesh.volumes[tets] * work
         return out
 

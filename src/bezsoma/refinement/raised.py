@@ -23,7 +23,12 @@ from bezsoma.errors import InputError
 from bezsoma.mechanics.body import HIGHEST_DEGREE, Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.torn import pressure_net
-from bezsoma.refinement.products import Product, linear_product, tangent_product
+from bezsoma.refinement.products import (
+    Product,
+    displacement_product,
+    linear_product,
+    tangent_product,
+)
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.multigrid import iterated, preconditioner
 from bezsoma.solvers.newton import Correction, Linearised
@@ -33,13 +38,19 @@ from bezsoma.solvers.solution import Solution
 from bezsoma.solvers.solve import threads_asked
 from bezsoma.solvers.tangents import Factored
 
-UP = 2
-"""How many degrees above the solution its error is looked for."""
-LOOSE = 0.03
-"""What a residual comes down to where what is left is an error of the error: about 1 % of it."""
+LOOSE = 0.05
+"""What a residual comes down to where what is left is an error of the error: about 2 % of it."""
 
 TIGHT = 1e-8
 """What it comes down to where an error of the degree itself has to be seen."""
+
+
+def up(degree: int) -> int:
+    """How many degrees above the solution its error is looked for: two, and one above degree 1.
+
+    Two above degree 1 have 27 times its unknowns, and see hardly more.
+    """
+    return 1 if degree == 1 else 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,12 +129,24 @@ class Raised:
 
     def _mirrored(self, x: Floats) -> Floats:
         """A change x with its pressure turned round: K is then positive."""
+        if self.pressures is None:
+            return x
         return np.concatenate([x[: self.split], -x[self.split :]])
 
     @cached_property
     def gain(self) -> float:
-        """The energy of the correction, N mm."""
-        return self.square(self.correction)
+        """The energy of the correction, N mm, had it been solved for exactly: `told`."""
+        return self.told(self.square(self.correction), self.step, self.left)
+
+    def told(self, energy: float, x: Floats, left: Floats) -> float:
+        """The energy N mm of what x (n,) would be if it left nothing, from that of x as it is.
+
+        With K (x + e) = b and b - K x = left, the energy is that of x, left . x and that of e: the
+        last alone is not known. Where K is not positive or not symmetric the energy stays as it is.
+        """
+        if self.pressures is not None or not self.symmetric:
+            return energy
+        return max(energy + float(np.einsum("i,i->", left, x)), 0.0)
 
     @cached_property
     def adjoint(self) -> Linearised:
@@ -140,10 +163,16 @@ class Raised:
         """z (n,) with K^T z = load where free, zero where held; not loosely."""
         return self.adjoint.solve(np.where(self.held, 0.0, load), TIGHT).dx
 
-    def sharpened(self, load: Floats, coarse: Floats, guess: Floats) -> Floats:
-        """What a dual of a lower degree (n,) lacks of the one of this degree, loosely; a guess."""
+    def sharpened(self, load: Floats, coarse: Floats, guess: Floats) -> tuple[Floats, float]:
+        """What a dual of a lower degree lacks of the one of this degree, loosely; its energy.
+
+        (n,) from a guess, and N mm as if solved for exactly.
+        """
         lacking = np.where(self.held, 0.0, load - self.adjoint.product(coarse))
-        return guess + self._solved(self.adjoint, lacking, guess)
+        lacks = guess + self._solved(self.adjoint, lacking, guess)
+        forces = self.adjoint.product(lacks)
+        energy = abs(float(np.einsum("i,i->", self._mirrored(lacks), forces))) / 2
+        return lacks, self.told(energy, lacks, np.where(self.held, 0.0, lacking - forces))
 
     def _solved(self, tangent: Linearised, b: Floats, guess: Floats) -> Floats:
         """What a guess (n,) lacks of the answer to b (n,), until `LOOSE` of b is left."""
@@ -161,8 +190,8 @@ class Raised:
         return np.concatenate([u, _pressure(p, lower.pressures.degree, self.pressures)])
 
 
-def raised(solution: Solution, by: int = UP, threads: int | None = None) -> Raised:
-    """The equations of a solution `by` degrees up.
+def raised(solution: Solution, by: int | None = None, threads: int | None = None) -> Raised:
+    """The equations of a solution `by` degrees up; None: as many as its estimates take, `up`.
 
     At the solution they are in balance as far as its own degree can tell; what is left is the
     residual that the higher degree sees:
@@ -176,7 +205,7 @@ def raised(solution: Solution, by: int = UP, threads: int | None = None) -> Rais
     >>> [round(float(abs(raised(solution, by).residual).max()), 3) for by in (0, 2)]
     [0.0, 0.009]
     """
-    body = _body(solution.body, by)
+    body = _body(solution.body, up(solution.body.degree) if by is None else by)
     threads = threads_asked(threads)
     if not is_linear(body):
         return _nonlinear(solution, body, threads)
@@ -263,7 +292,7 @@ def _displacement(solution: Solution, body: Body, threads: int) -> Raised:
     start = np.where(known.mask, known.values, written)
     residual = np.where(known.mask, 0.0, equations.residual(start))
     tangent = _Applied(operator, known.mask, preconditioner(operator, known.mask))
-    product = linear_product(net, None, np.column_stack([lame, np.zeros(len(lame))]))
+    product = displacement_product(net, lame, threads)
     flat = (written.ravel(), start.ravel(), known.mask.ravel(), residual.ravel())
     return Raised(solution, body, net, None, *flat, tangent, product, True, threads)
 

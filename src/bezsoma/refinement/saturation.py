@@ -15,6 +15,9 @@ SLOWEST = 1.0
 """The least power that is believed: stress then grows as distance^(-3/4), past a crack's 1/2."""
 FASTEST = 60.0
 """The greatest: nothing is left to be seen."""
+FIRST = 4.0
+"""That of degree 1, which is compared with degree 2 alone: most of what it lacks is curvature, and
+degree 2 was seen to find 0.92 to 0.99 of what 3 does, on tets that show the solution at all."""
 
 
 def share(rate: float, degree: int, by: int) -> float:
