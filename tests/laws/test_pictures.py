@@ -6,6 +6,7 @@ from __future__ import annotations
 import builtins
 import io
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -328,6 +329,20 @@ def test_the_colour_bar_ends_at_the_range_of_the_field(monkeypatch: pytest.Monke
     ticks = bar.get_xticks()
     assert np.isclose(ticks, -1.5).any()
     assert ((ticks >= -1.5 - ROUNDING) & (ticks <= 2.5 + ROUNDING)).all()
+
+
+@pytest.mark.parametrize("top", [5.0, 5.1, 5.3, 5.7])
+def test_both_ends_of_the_colour_bar_have_numbers_that_run_into_none(
+    monkeypatch: pytest.MonkeyPatch, top: float
+) -> None:
+    mesh = block((2.0, 1.0, 1.0), (2, 1, 1))
+    scalar = field(mesh, 1, lambda p: p[:, 0] * top / 2)
+    figure = drawn(monkeypatch, lambda: picture(None, mesh, scalar, label="mm", size=SMALL))
+    figure.canvas.draw()
+    words = [each for each in figure.axes[1].get_xticklabels() if each.get_text()]
+    assert {"0", f"{top:.3g}"} <= {each.get_text() for each in words}
+    places = sorted((each.get_window_extent().x0, each.get_window_extent().x1) for each in words)
+    assert all(one[1] < other[0] for one, other in pairwise(places))
 
 
 def test_the_face_sheet_measures_the_displacement(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -117,6 +117,21 @@ def test_the_mesh_before_stands_where_it_stood() -> None:
     assert length < 2 * (20 + 6) + 6 + 2 * np.hypot(10, 6) + 2 * (20 + 20)  # the back is hidden
 
 
+def test_a_cut_hides_what_stood_behind_it_before_the_move() -> None:
+    mesh = bar()
+    shot = Shot(mesh, displacement=bent(mesh), before=True, plane="y=3").checked("")
+    camera = fitted("front", shot.subject.points(), SMALL)
+    (strokes,) = shot.seen(camera).strokes
+    corners = camera.pixels(mesh.points)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle = strokes.segments.mean(axis=1)
+    inner = ((middle > low + 2) & (middle < high - 2)).all(axis=1)
+    assert not inner.any()  # the back wall has edges across, and a diagonal to each
+    missed = Shot(mesh, displacement=shot.displacement, before=True, plane="z=8").checked("")
+    below = fitted("top", missed.subject.points(), SMALL)
+    assert missed.seen(below).strokes[0].label == "before"  # cut after the move alone
+
+
 def test_the_control_net_is_drawn_at_the_controls_and_not_on_the_surface() -> None:
     mesh = bar()
     shot = Shot(mesh, displacement=bent(mesh), net=True).checked("")

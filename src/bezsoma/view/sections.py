@@ -106,6 +106,13 @@ class Section:
         numbers = measured(values.reshape(*values.shape[:2], -1), measure)
         return pieces, corners_of(numbers, parts)
 
+    def face_before(self) -> list[Drawn]:
+        """The face that the plane cut into the body before the move; none where it missed it."""
+        kept = self.kept()
+        if kept.all() or not kept.any():
+            return []
+        return [Section(self.mesh, self.plane, None, False).face(None, None, False)[0]]
+
     def _normals(self, cut: Level, inner: Floats) -> Floats:
         """The unit normals (r, b, 3) of the face."""
         normal = np.broadcast_to(np.array(self.plane.normal), (len(cut), len(inner), 3))

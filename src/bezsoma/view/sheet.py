@@ -540,12 +540,11 @@ def _colour_bar(figure: Figure, layout: Layout, corner: tuple[int, int], bar: Ba
         norm=Normalize(0, 1),
         aspect="auto",
     )
-    ends = [value for value in span if _far(value, bar.levels, span)] if high > low else [low]
+    ends = list(span) if high > low else [low]
+    ticks = [*ends, *bar.levels.tolist()]
+    words = [f"{tick:.3g}" if tick in ends or _far(tick, ends, span) else "" for tick in ticks]
     axes.set(xlim=span, yticks=[], label="colour bar")
-    axes.set_xticks(
-        sorted([*bar.levels.tolist(), *ends]),
-        [f"{tick:.3g}" for tick in sorted([*bar.levels.tolist(), *ends])],
-    )
+    axes.set_xticks(ticks, words)
     axes.vlines(bar.levels, 0, 1, color="black", alpha=0.55, lw=0.9 * points)
     axes.tick_params(
         labelsize=14 * points, color=INK, labelcolor=INK, length=4 * points, pad=3.2 * points
@@ -555,8 +554,8 @@ def _colour_bar(figure: Figure, layout: Layout, corner: tuple[int, int], bar: Ba
         spine.set(color=INK, linewidth=0.8 * points)
 
 
-def _far(value: float, levels: Floats, span: tuple[float, float]) -> bool:
-    """Whether a number beside the bar's end does not run into the next one."""
-    letters = np.array([len(f"{each:.3g}") + len(f"{value:.3g}") for each in levels]) / 2
+def _far(value: float, ends: Sequence[float], span: tuple[float, float]) -> bool:
+    """Whether the number of a level does not run into that of the bar's end."""
+    letters = np.array([len(f"{each:.3g}") + len(f"{value:.3g}") for each in ends]) / 2
     apart = np.maximum(0.07, _LETTER * letters) * (span[1] - span[0])
-    return bool((np.abs(levels - value) > apart).all())
+    return bool((np.abs(np.array(ends) - value) > apart).all())

@@ -158,10 +158,11 @@ class Shot:
         if self.before:
             facets = np.concatenate([self.subject.facets, self.subject.rest])
             old: Drawn = displaced(self.mesh, facets, None)
+            hiding, kept = [old], None
             if section is not None:
-                old = clipped(old, section.plane.heights(old.points))
-            kept = None if section is None else section.kept()
-            strokes.append(wireframe(self.subject, Screen.of(camera, [old]), kept))
+                kept = section.kept()
+                hiding = [clipped(old, section.plane.heights(old.points)), *section.face_before()]
+            strokes.append(wireframe(self.subject, Screen.of(camera, hiding), kept))
         if self.net:
             screen = Screen.of(camera, [part.surface for part in solid])
             whole = None if section is None else section.keeps(self.subject.facets)
