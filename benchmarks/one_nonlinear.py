@@ -47,7 +47,8 @@ def ours(given: problem.Tets, degree: int, law: str, configuration: str, threads
         given.points, given.tets, surfaces={"bottom": given.bottom, "top": given.patch}
     )
     E, nu = problem.E, problem.NU
-    material = bz.Stiffening(E, nu, A) if law == "stiffening" else bz.NeoHooke(E, nu)
+    laws = {"linear": bz.LinearElastic(E, nu), "stiffening": bz.Stiffening(E, nu, A)}
+    material = laws.get(law) or bz.NeoHooke(E, nu)
     supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0, 0, STRAIN))]
     clock = Clock()
     body = bz.Body(mesh, degree, material, supports)

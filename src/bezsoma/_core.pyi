@@ -128,11 +128,28 @@ class Multigrid:
         most: int,
         report: Callable[[int, float], None],
     ) -> tuple[list[float], float, bool, bool, bool]: ...
-    def apply(self, r: Floats, z: Floats) -> None: ...
     @property
     def levels(self) -> list[int]: ...
     @property
     def bytes(self) -> int: ...
+
+class Inverse:
+    def __init__(
+        self,
+        walk: Walk,
+        corners: Int32s | None,
+        points: Floats,
+        held: Bools,
+        held_vertices: Bools,
+        threads: int = 0,
+        instructions: str = "",
+    ) -> None: ...
+    def apply(self, r: Floats, z: Floats) -> None: ...
+    def apply_single(self, r: Singles, z: Singles) -> None: ...
+    @property
+    def bytes(self) -> int: ...
+    @property
+    def threads(self) -> int: ...
 
 class Saddle:
     def __init__(

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 T = TypeVar("T", bound=np.generic)
 Floats = npt.NDArray[np.float64]
+Singles = npt.NDArray[np.float32]
 Ints = npt.NDArray[np.int64]
 Int32s = npt.NDArray[np.int32]
 Bools = npt.NDArray[np.bool_]

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "bindings_inverse.hpp"
 
 #include "aggregation.hpp"
 #include "block_csr.hpp"
@@ -42,7 +43,7 @@ namespace {
 
 using bezsoma::handed_over, bezsoma::In, bezsoma::Out, bezsoma::require, bezsoma::Vectors,
     bezsoma::Walk, bezsoma::listen_to_signals, bezsoma::numbered_by_walk, bezsoma::Scalars,
-    bezsoma::Turn;
+    bezsoma::Turn, bezsoma::Corners, bezsoma::Inverse;
 
 /// gradients, volumes, lambda and mu of the same tets.
 struct Tets {
@@ -359,60 +360,6 @@ private:
     std::unique_ptr<bezsoma::MixedOperator> operator_;
 };
 
-using Corners = In<std::int32_t, -1, 4>;
-
-/// About the inverse of the stiffness of a displacement with its supports: blocks of entities, and
-/// degree 1 by multigrid, which is all there is at degree 1.
-struct Inverse {
-    std::vector<std::uint8_t> held;
-    std::unique_ptr<bezsoma::Preconditioner> blocks;
-    std::unique_ptr<bezsoma::Aggregation> aggregation;
-
-    /// `form` is the MatrixFree or MixedFree whose team works; corners (tets, 4) are the rows of
-    /// each tet's vertices, whose places are points and whose fixed components held_vertices. The
-    /// walk is used up: its numbering has done its work halfway, and is much of the memory.
-    template <class Form>
-    Inverse(Form &form, Walk &walk, const std::optional<Corners> &corners,
-            const In<double, -1, 3> &points, const In<bool, -1, 3> &fixed,
-            const In<bool, -1, 3> &held_vertices) {
-        const bezsoma::ElasticTets tets = walk.tets();
-        const auto vertices = static_cast<std::int64_t>(points.shape(0));
-        require(corners ? corners->shape(0) == walk.corners.shape(0) &&
-                              bezsoma::within(*corners, points.shape(0))
-                        : tets.degree == 1,
-                "corners must number the vertices of the walk's tets; none are at degree 1 alone");
-        require(fixed.shape(0) == static_cast<std::size_t>(form.form().controls()) &&
-                    held_vertices.shape(0) == points.shape(0) &&
-                    (corners || fixed.shape(0) == points.shape(0)) &&
-                    numbered_by_walk(tets.degree, walk.first) == form.form().controls(),
-                "held and held_vertices must fit the walk's controls and vertices");
-        held.assign(fixed.data(), fixed.data() + fixed.size());
-        const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
-                                                    held_vertices.data() + held_vertices.size());
-        const std::int32_t *rows = corners ? corners->data() : tets.first;
-        nb::gil_scoped_release released;
-        const Turn turn(form.turn());
-        if (tets.degree > 1)
-            blocks = std::make_unique<bezsoma::Preconditioner>(tets, rows, vertices, held.data(),
-                                                               form.form().chunks(), form.kernels(),
-                                                               form.team());
-        bezsoma::BlockRows matrix =
-            bezsoma::vertex_matrix(tets, rows, vertices, at_vertices.data(), form.team());
-        {
-            nb::gil_scoped_acquire counted;
-            walk.first = {};
-        }
-        aggregation = std::make_unique<bezsoma::Aggregation>(std::move(matrix), points.data(),
-                                                             at_vertices.data(), form.team());
-    }
-
-    bezsoma::Search search(bezsoma::Team &team) {
-        return {blocks.get(), [this](const float *r, float *z) { aggregation->apply(r, z); }, team};
-    }
-
-    std::size_t bytes() const { return (blocks ? blocks->bytes() : 0) + aggregation->bytes(); }
-};
-
 auto told(const bezsoma::Convergence &found) {
     return nb::make_tuple(found.history, found.residual, found.converged, found.indefinite,
                           found.rounded);
@@ -423,7 +370,8 @@ class Multigrid {
 public:
     Multigrid(MatrixFree &k, Walk &walk, const std::optional<Corners> &corners,
               In<double, -1, 3> points, In<bool, -1, 3> held, In<bool, -1, 3> held_vertices)
-        : k_(k), inverse_(k, walk, corners, points, held, held_vertices) {}
+        : k_(k), inverse_(walk, corners, {points, held, held_vertices, k.form().controls()},
+                          &k.form().chunks(), k.kernels(), k.team()) {}
 
     auto solve(In<double, -1, 3> f, Vectors x, double reference, double rtol, int most,
                const std::function<void(int, double)> &report) {
@@ -443,22 +391,6 @@ public:
         return told(found);
     }
 
-    /// z = B r.
-    void apply(In<double, -1, 3> r, Vectors z) {
-        const auto &held = inverse_.held;
-        require(r.size() == held.size() && z.size() == held.size(),
-                "r and z must have one row a control");
-        nb::gil_scoped_release released;
-        const Turn turn(k_.turn());
-        std::vector<double> from(r.data(), r.data() + r.size()), to(r.size() + bezsoma::padding);
-        from.resize(to.size());
-        bezsoma::Search search = inverse_.search(k_.team());
-        search.take(from.data(), 1.0, held.size());
-        search.follow(1.0, 0.0, to.data());
-        for (std::size_t i = 0; i < held.size(); ++i)
-            z.data()[i] = held[i] ? 0.0 : to[i];
-    }
-
     std::vector<std::int64_t> levels() const { return inverse_.aggregation->sizes(); }
     std::size_t bytes() const { return inverse_.bytes(); }
 
@@ -474,7 +406,9 @@ public:
     Saddle(MixedFree &form, Walk &walk, const std::optional<Corners> &corners,
            In<double, -1, 3> points, In<bool, -1, 3> held, In<bool, -1, 3> held_vertices,
            In<double, -1> weight, In<double, -1, -1> levels)
-        : form_(form), inverse_(form, walk, corners, points, held, held_vertices) {
+        : form_(form),
+          inverse_(walk, corners, {points, held, held_vertices, form.form().controls()},
+                   &form.form().chunks(), form.kernels(), form.team()) {
         require(static_cast<std::int64_t>(weight.size()) == form.form().regions() &&
                     levels.shape(1) == static_cast<std::size_t>(form.form().pressures()),
                 "weight and levels must fit the regions and the pressure's controls");
@@ -570,7 +504,6 @@ NB_MODULE(_core, m) {
              nb::keep_alive<1, 2>())
         .def("solve", &Multigrid::solve, "f"_a, "x"_a, "reference"_a, "rtol"_a, "most"_a,
              "report"_a)
-        .def("apply", &Multigrid::apply, "r"_a, "z"_a)
         .def_prop_ro("levels", &Multigrid::levels)
         .def_prop_ro("bytes", &Multigrid::bytes);
     nb::class_<Saddle>(m, "Saddle")
@@ -582,6 +515,7 @@ NB_MODULE(_core, m) {
              "rtol"_a, "most"_a, "report"_a)
         .def_prop_ro("bytes", &Saddle::bytes);
     bezsoma::bind_laws(m);
+    bezsoma::bind_inverse(m);
     m.def("instruction_sets", [] {
         std::vector<std::string> found;
         for (const char *name : {"avx512", "avx2", "baseline"})

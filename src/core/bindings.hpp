@@ -131,4 +131,7 @@ inline const Kernels &kernels_of(const std::string &instructions) {
 /// Adds laws at points and their operator to the module.
 void bind_laws(nb::module_ &m);
 
+/// Adds the preconditioner that stands by itself.
+void bind_inverse(nb::module_ &m);
+
 } // namespace bezsoma

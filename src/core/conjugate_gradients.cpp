@@ -36,6 +36,28 @@ void Search::follow(double norm, double beta, double *p) {
                     [&](std::size_t i) { p[i] = beta * p[i] + norm * double{z_[i]}; });
 }
 
+template <class T>
+void Search::answer(const T *r, T *z, const std::uint8_t *fixed, std::size_t length) {
+    if (blocks_) {
+        blocks_->read(r, r_);
+    } else {
+        r_.resize(length);
+        each_number(team_, length, [&](std::size_t i) { r_[i] = static_cast<float>(r[i]); });
+    }
+    z_.resize(r_.size());
+    vertices_(r_.data(), z_.data());
+    if (blocks_)
+        blocks_->write(z_, z);
+    each_number(team_, length, [&](std::size_t i) {
+        if (fixed[i])
+            z[i] = 0;
+        else if (!blocks_)
+            z[i] = static_cast<T>(z_[i]);
+    });
+}
+template void Search::answer(const double *, double *, const std::uint8_t *, std::size_t);
+template void Search::answer(const float *, float *, const std::uint8_t *, std::size_t);
+
 Convergence conjugate_gradients(ElasticOperator<double> &k, Search search,
                                 const std::uint8_t *fixed, const double *f, double *x,
                                 double reference, double rtol, int most, Team &team,

@@ -34,6 +34,9 @@ public:
     double take(const double *r, double norm, std::size_t length);
     void follow(double norm, double beta, double *p);
 
+    /// z = B r (length), zero where fixed: both halves at once, for r of norm one or so.
+    template <class T> void answer(const T *r, T *z, const std::uint8_t *fixed, std::size_t length);
+
 private:
     Preconditioner *blocks_;
     VertexSolver vertices_;

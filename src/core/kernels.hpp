@@ -39,7 +39,8 @@ struct Entity {
 /// `back`.
 struct BlockBatches {
     std::int64_t count;
-    const std::int32_t *control;  // (batches, lanes) the first control, 0 for a lane without entity
+    const std::int32_t *control;  // (batches, lanes) the first control, counted from where r and p
+                                  // begin; 0 for a lane without entity
     const std::int32_t *vertices; // (batches, dim + 1, lanes)
     const float *value;
     float *z;

@@ -2,6 +2,7 @@
 #include "preconditioner.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -24,11 +25,15 @@ Preconditioner::Preconditioner(const ElasticTets &tets, const std::int32_t *corn
                                const Chunks &chunks, const Kernels &kernels, Team &team)
     : lanes_(kernels.lanes64), kernel_(kernels.blocks[tets.degree - 1]), team_(team), rows_{},
       moments_from_{}, vertex_value_(size(6 * vertices)), vertex_z_(size(6 * vertices)),
-      dots_(chunks.parts.size()), vertex_dots_((size(vertices) + piece - 1) / piece) {
+      dots_(chunks.parts.size()), vertex_dots_((size(vertices) + piece - 1) / piece),
+      scratch_(team.size()) {
     const Entities found = entities(tets.degree, tets.first, corners, tets.tets, team);
-    for (const Chunk &chunk : chunks.parts)
+    for (const Chunk &chunk : chunks.parts) {
+        control_of_.push_back(chunk.control);
         range_.push_back(std::ranges::lower_bound(found.all, chunk.control, {}, &Entity::control) -
                          found.all.begin());
+    }
+    control_of_.push_back(chunks.controls);
     range_.push_back(static_cast<std::int64_t>(found.all.size()));
     arrange(found);
     fill(tets, found, fixed);
@@ -78,7 +83,9 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
                 if (e < 0)
                     continue;
                 const Entity &entity = entities.all[size(e)];
-                control_[dim][batch * lanes + lane] = entity.control;
+                control_[dim][batch * lanes + lane] =
+                    entity.control - static_cast<std::int32_t>(*std::prev(
+                                         std::ranges::upper_bound(control_of_, entity.control)));
                 for (std::size_t v = 0; v <= dim; ++v)
                     vertices_[dim][(batch * (dim + 1) + v) * lanes + lane] = entity.vertices[v];
                 blocks.inverse(size(e), fixed, scratch, packed.data());
@@ -132,13 +139,41 @@ BlockBatches Preconditioner::batches(std::size_t part, std::size_t dim) {
             moments_.data() + moments_from_[dim] + lane * moments_of(static_cast<int>(dim))};
 }
 
+/// Of the entities of a chunk, whose own controls' residual is `own`.
+double Preconditioner::forward_of(std::size_t part, const double *own, double scale) {
+    double sum = 0;
+    for (std::size_t dim = 0; dim < 4; ++dim)
+        if (groups_[dim][part].batches > 0)
+            sum += kernel_[dim].forward(batches(part, dim), own, scale);
+    return sum;
+}
+
+void Preconditioner::back_of(std::size_t part, double norm, double beta, double *own) {
+    for (std::size_t dim = 0; dim < 4; ++dim)
+        if (const Group &group = groups_[dim][part]; group.batches > 0)
+            kernel_[dim].back(batches(part, dim), group.entities, vertex_z_.data(), norm, beta,
+                              own);
+}
+
 double Preconditioner::forward(const double *r, double norm, std::vector<float> &coarse) {
     team_.run(dots_.size(), [&](std::size_t part, std::size_t) {
-        dots_[part] = 0;
-        for (std::size_t dim = 0; dim < 4; ++dim)
-            if (groups_[dim][part].batches > 0)
-                dots_[part] += kernel_[dim].forward(batches(part, dim), r, 1 / norm);
+        dots_[part] = forward_of(part, r + begin(part), 1 / norm);
     });
+    return of_vertices(coarse) * norm * norm;
+}
+
+template <class T> void Preconditioner::read(const T *r, std::vector<float> &coarse) {
+    team_.run(dots_.size(), [&](std::size_t part, std::size_t thread) {
+        std::vector<double> &own = scratch_[thread];
+        own.resize(length(part) + padding);
+        std::copy_n(r + begin(part), length(part), own.begin());
+        dots_[part] = forward_of(part, own.data(), 1.0);
+    });
+    of_vertices(coarse);
+}
+
+/// The forces of the degree-1 problem; returns r . z of all blocks, r scaled as it was read.
+double Preconditioner::of_vertices(std::vector<float> &coarse) {
     const std::size_t vertices = moment_start_.size() - 1;
     coarse.resize(3 * vertices);
     team_.run(vertex_dots_.size(), [&](std::size_t p, std::size_t) {
@@ -147,7 +182,7 @@ double Preconditioner::forward(const double *r, double norm, std::vector<float> 
             vertex_dots_[p] += at_vertex(v, coarse.data() + 3 * v);
     });
     const double blocks = std::accumulate(dots_.begin(), dots_.end(), 0.0);
-    return std::accumulate(vertex_dots_.begin(), vertex_dots_.end(), blocks) * norm * norm;
+    return std::accumulate(vertex_dots_.begin(), vertex_dots_.end(), blocks);
 }
 
 /// Sums the moments at a vertex: those of degree 1 into `coarse`; keeps z of its own function and
@@ -171,16 +206,28 @@ double Preconditioner::at_vertex(std::size_t vertex, float *coarse) {
     return double{own[0]} * z[0] + double{own[1]} * z[1] + double{own[2]} * z[2];
 }
 
-void Preconditioner::back(const std::vector<float> &coarse, double norm, double beta, double *p) {
+/// Keeps the degree-1 answer beside those of the vertices' own functions.
+void Preconditioner::keep(const std::vector<float> &coarse) {
     team_.run(vertex_dots_.size(), [&](std::size_t q, std::size_t) {
         for (std::size_t v = q * piece; v < std::min((q + 1) * piece, coarse.size() / 3); ++v)
             std::copy_n(coarse.data() + 3 * v, 3, vertex_z_.data() + 6 * v);
     });
-    team_.run(dots_.size(), [&](std::size_t part, std::size_t) {
-        for (std::size_t dim = 0; dim < 4; ++dim)
-            if (const Group &group = groups_[dim][part]; group.batches > 0)
-                kernel_[dim].back(batches(part, dim), group.entities, vertex_z_.data(), norm, beta,
-                                  p);
+}
+
+void Preconditioner::back(const std::vector<float> &coarse, double norm, double beta, double *p) {
+    keep(coarse);
+    team_.run(dots_.size(),
+              [&](std::size_t part, std::size_t) { back_of(part, norm, beta, p + begin(part)); });
+}
+
+template <class T> void Preconditioner::write(const std::vector<float> &coarse, T *z) {
+    keep(coarse);
+    team_.run(dots_.size(), [&](std::size_t part, std::size_t thread) {
+        std::vector<double> &own = scratch_[thread];
+        own.assign(length(part) + padding, 0.0);
+        back_of(part, 1.0, 0.0, own.data());
+        std::transform(own.begin(), own.begin() + static_cast<std::ptrdiff_t>(length(part)),
+                       z + begin(part), [](double x) { return static_cast<T>(x); });
     });
 }
 
@@ -192,5 +239,10 @@ std::size_t Preconditioner::bytes() const {
                (control_[dim].size() + vertices_[dim].size() + value_[dim].size() + z_[dim].size());
     return sum;
 }
+
+template void Preconditioner::read(const double *, std::vector<float> &);
+template void Preconditioner::read(const float *, std::vector<float> &);
+template void Preconditioner::write(const std::vector<float> &, double *);
+template void Preconditioner::write(const std::vector<float> &, float *);
 
 } // namespace bezsoma

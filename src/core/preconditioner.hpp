@@ -36,6 +36,11 @@ public:
     /// p = beta p + z, with z made of the blocks' and the degree-1 answer. p is padded likewise.
     void back(const std::vector<float> &coarse, double norm, double beta, double *p);
 
+    /// The same halves of z = B r, r of norm one or so: chunks copy what they read and write, so
+    /// that neither is padded, and either precision serves.
+    template <class T> void read(const T *r, std::vector<float> &coarse);
+    template <class T> void write(const std::vector<float> &coarse, T *z);
+
     std::size_t bytes() const;
 
 private:
@@ -47,17 +52,27 @@ private:
     void arrange(const Entities &entities);
     void fill(const ElasticTets &tets, const Entities &entities, const std::uint8_t *fixed);
     void list_moments(std::int64_t vertices);
+    double forward_of(std::size_t part, const double *own, double scale);
+    void back_of(std::size_t part, double norm, double beta, double *own);
+    double of_vertices(std::vector<float> &coarse);
+    void keep(const std::vector<float> &coarse);
     double at_vertex(std::size_t vertex, float *coarse);
+    /// Where the numbers of a chunk's own controls begin among all, and how many they are.
+    std::size_t begin(std::size_t part) const {
+        return 3 * static_cast<std::size_t>(control_of_[part]);
+    }
+    std::size_t length(std::size_t part) const { return begin(part + 1) - begin(part); }
     BlockBatches batches(std::size_t part, std::size_t dim);
 
     int lanes_;
     const BlockKernel *kernel_;
     Team &team_;
-    std::vector<std::int64_t> range_; // (parts + 1,) the first entity of each chunk
+    std::vector<std::int64_t> control_of_; // (parts + 1,) the first own control of each chunk
+    std::vector<std::int64_t> range_;      // (parts + 1,) the first entity of each chunk
     std::array<std::vector<Group>, 4> groups_;
     std::array<std::int64_t, 4> rows_;
     std::array<std::vector<std::int32_t>, 4> number_; // of the entity, -1 for a lane without one
-    std::array<std::vector<std::int32_t>, 4> control_, vertices_;
+    std::array<std::vector<std::int32_t>, 4> control_, vertices_; // control_ as its chunk counts
     std::array<std::vector<float>, 4> value_, z_;
     std::array<std::size_t, 4> moments_from_; // where those of a dimension begin
     std::vector<float> moments_;
@@ -67,6 +82,7 @@ private:
     std::vector<float> vertex_z_;            // (vertices, 2, 3) of degree 1, of their own functions
     std::vector<double> dots_;               // a chunk each
     std::vector<double> vertex_dots_;        // a piece of vertices each
+    std::vector<std::vector<double>> scratch_; // a thread each
 };
 
 } // namespace bezsoma

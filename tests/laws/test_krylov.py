@@ -15,7 +15,7 @@ import pytest
 from bezsoma.arrays import Floats
 from bezsoma.errors import NotConverged
 from bezsoma.solvers.bicgstab import stabilised
-from bezsoma.solvers.krylov import Operator, conjugate_gradients
+from bezsoma.solvers.krylov import Operator, conjugate_gradients, dot
 
 
 def operator(eigenvalues: list[float], seed: int = 2) -> tuple[Operator, Floats, int]:
@@ -79,8 +79,9 @@ def test_rough_products_give_an_answer_as_good(way: Any) -> None:
     apply, A, rows = operator(np.linspace(1, 30, 40).tolist())
     rough_A, asked = A.astype(np.float32), []
 
-    def rough(x: Floats) -> Floats:
-        return (rough_A @ x.ravel().astype(np.float32)).astype(float).reshape(-1, 3)
+    def rough(x: Any) -> Any:
+        assert x.dtype == np.float32, "its vectors are to take half the memory"
+        return (rough_A @ x.ravel()).reshape(-1, 3)
 
     def exact(x: Floats) -> Floats:
         asked.append(1)
@@ -90,3 +91,13 @@ def test_rough_products_give_an_answer_as_good(way: Any) -> None:
     left = np.linalg.norm(load(rows).ravel() - A @ x.ravel())
     assert left <= 1e-11 * np.linalg.norm(load(rows))
     assert len(asked) <= 5, "exact products are for the true residual"
+
+
+def test_sums_of_float32_are_as_exact_as_their_numbers() -> None:
+    """A running sum in float32 would lose a thousandth of a million ones."""
+    x = np.full((400_001, 3), 1.0, dtype=np.float32)
+    y = np.random.default_rng(1).normal(size=x.shape).astype(np.float32)
+    assert dot(x, x) == x.size
+    exact = float((y.astype(float) ** 2).sum())
+    assert dot(y, y) == pytest.approx(exact, rel=1e-6)
+    assert dot(y[:7], y[:7]) == pytest.approx(float((y[:7].astype(float) ** 2).sum()), rel=1e-14)

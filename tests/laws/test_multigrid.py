@@ -19,7 +19,7 @@ from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Polynomial, Precedence, Traction
 from bezsoma.mesh import ControlNet, TetMesh, block
 from bezsoma.solvers import solve
-from bezsoma.solvers.multigrid import preconditioner
+from bezsoma.solvers.multigrid import preconditioned, preconditioner
 from tolerances import ENERGY_NORM
 
 ITERATIONS = {2: 53, 3: 61, 4: 69, 5: 86, 6: 107}
@@ -69,13 +69,11 @@ class Apart:
         self.net = ControlNet(body.mesh, body.degree)
         self.held: Bools = prescribed(body, self.net).mask
         operator = MatrixFree(self.net, lame_constants(body), threads, instructions)
-        self.blocks = preconditioner(operator, self.held)
+        self.alone = preconditioned(operator, self.held)
         self.body, self.operator = body, operator
 
     def __call__(self, r: Floats) -> Floats:
-        z = np.empty_like(r)
-        self.blocks.apply(np.ascontiguousarray(r), z)
-        return z
+        return self.alone(r)
 
     def free_vectors(self, count: int) -> list[Floats]:
         random = np.random.default_rng(3)
@@ -286,11 +284,12 @@ def test_the_residual_told_is_the_true_one(degree: int) -> None:
 
 def test_levels_shrink_to_a_small_dense_one() -> None:
     B = Apart(cube(1, 20))
-    levels = B.blocks.levels
+    blocks = preconditioner(B.operator, B.held)
+    levels = blocks.levels
     assert levels[0] == 21**3
     assert all(below < above / 3 for above, below in pairwise(levels))
     assert levels[-1] <= 300
-    assert B.blocks.bytes > 21**3 * 9 * 4 * 10
+    assert blocks.bytes > 21**3 * 9 * 4 * 10
 
 
 def test_a_motion_that_is_missing_would_be_missed() -> None:
@@ -310,9 +309,31 @@ def test_a_motion_that_is_missing_would_be_missed() -> None:
 def test_shapes_that_do_not_fit_are_refused(degree: int) -> None:
     B = Apart(mixed(degree))
     wrong = np.zeros((B.net.count - 1, 3))
+    for kind in (np.float64, np.float32):
+        with pytest.raises(ValueError, match="one row a control"):
+            B.alone(wrong.astype(kind))
+    blocks = preconditioner(B.operator, B.held)
     with pytest.raises(ValueError, match="one row a control"):
-        B.blocks.apply(wrong, wrong.copy())
-    with pytest.raises(ValueError, match="one row a control"):
-        B.blocks.solve(wrong, wrong.copy(), 1.0, 1e-8, 10, lambda *_: None)
-    with pytest.raises(ValueError, match="must fit"):
-        preconditioner(B.operator, B.held[:, :].repeat(2, axis=0))
+        blocks.solve(wrong, wrong.copy(), 1.0, 1e-8, 10, lambda *_: None)
+    for way in (preconditioner, preconditioned):
+        with pytest.raises(ValueError, match="must fit"):
+            way(B.operator, B.held[:, :].repeat(2, axis=0))
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3, 6])
+def test_float32_is_preconditioned_as_well(degree: int) -> None:
+    """By the same numbers, which are float32: only what goes in and comes out is rounded."""
+    B = Apart(mixed(degree))
+    (r,) = B.free_vectors(1)
+    single = r.astype(np.float32)
+    found = B.alone(single)
+    assert found.dtype == np.float32
+    np.testing.assert_array_equal(found, B.alone(single.astype(float)).astype(np.float32))
+
+
+def test_what_stands_alone_keeps_no_product() -> None:
+    """The linear operator would be a third of a tangent's memory, and is not used."""
+    B = Apart(cube(2, 8))
+    assert "kernel" not in B.operator.__dict__
+    assert preconditioner(B.operator, B.held).bytes > 0
+    assert "kernel" in B.operator.__dict__

@@ -32,9 +32,9 @@ CORE_ERRORS = (
     ),
     Mutant(
         "corners of tets believed without a look",
-        f"{CORE}/bindings.cpp",
-        "bezsoma::within(*corners, points.shape(0))",
-        "true",
+        f"{CORE}/bindings_inverse.cpp",
+        "&& within(*corners, points.shape(0))",
+        "",
         TEAM,
     ),
     Mutant(

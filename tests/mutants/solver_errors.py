@@ -92,8 +92,8 @@ BLOCKS = (
         ),
         (
             "r.z with the norm in place of its square",
-            "blocks) * norm * norm;",
-            "blocks) * norm;",
+            "of_vertices(coarse) * norm * norm;",
+            "of_vertices(coarse) * norm;",
         ),
     ),
 )

@@ -30,7 +30,7 @@ def inside_out(net: ControlNet, laws: Sequence[Any], u: Floats) -> str:
     """
     corners = bernstein.derivatives(net.degree, np.eye(4))
     mesh, bad, worst = net.mesh, 0, (np.inf, -1, 0)
-    points = Pointwise(net, laws, 1)
+    points = Pointwise(net, laws, 1, once=True)
     for law, tets in points.runs():
         if not getattr(law, "finite", False):
             continue

@@ -32,7 +32,7 @@ def moduli_at(pointwise: Pointwise, u: Floats) -> Floats:
     >>> bool(stretched[0, 1] > np.exp(5 * 0.24)) # exp(A s^2) is the secant, and less
     True
     """
-    middle = Pointwise(pointwise.net, pointwise.laws, 1)
+    middle = Pointwise(pointwise.net, pointwise.laws, 1, once=True)
     found = np.empty((len(pointwise.net.mesh.tets), 2))
     for law, tets in middle.runs():
         H = middle.gradients(u, tets)[:, 0]

@@ -14,13 +14,15 @@ from typing import Protocol
 import numpy as np
 
 from bezsoma import bernstein
-from bezsoma.arrays import Bools, Floats, Ints
+from bezsoma.arrays import Bools, Floats, Ints, Singles
 from bezsoma.errors import Inadmissible
 from bezsoma.mechanics.laws import Law
 from bezsoma.mesh.control_net import ControlNet
 
 AT_ONCE = 1 << 19
 """Numbers in the largest scratch array."""
+FEWEST = 16
+"""Where there are fewer points than this the largest array is another: as if there were so many."""
 
 
 class Tangent(Protocol):
@@ -35,8 +37,9 @@ class Tangent(Protocol):
         """Its product (c, 3) N with a change du (c, 3) mm."""
         ...
 
-    def roughly(self, du: Floats) -> Floats:
-        """The same, to six digits or so where that is sooner done."""
+    @property
+    def rough(self) -> Callable[[Singles], Singles] | None:
+        """The same in float32 throughout, for directions that need no more; None if it cannot."""
         ...
 
 
@@ -93,6 +96,8 @@ class Pointwise:
     net: ControlNet
     laws: Sequence[Law]
     exactness: int
+    once: bool = False
+    """For one pass over the tets: what it takes of the mesh and the net is not kept."""
 
     @property
     def symmetric(self) -> bool:
@@ -181,14 +186,16 @@ class Pointwise:
         `partials` (q, m, 4) are those of other points than the rule's.
         """
         partials = self.rule[0] if partials is None else partials
-        local = u[self.net.of_tet[tets]]
+        mesh = self.net.mesh
+        local = u[self.net.closure(3, tets) if self.once else self.net.of_tet[tets]]
         local = np.swapaxes(local - local[:, :1], 1, 2)[:, None]
         steps = local @ partials
-        return np.asarray(steps @ self.net.mesh.gradients[tets][:, None])
+        slopes = mesh.gradients_of(tets) if self.once else mesh.gradients[tets]
+        return np.asarray(steps @ slopes[:, None])
 
     def runs(self) -> Iterator[tuple[Law, Ints]]:
         """The laws and the tets of their regions, so few at a time that scratch stays small."""
-        size = max(1, AT_ONCE // (len(self.rule[1]) * 4 * 9))
+        size = max(1, AT_ONCE // (max(len(self.rule[1]), FEWEST) * 4 * 9))
         for number, law in enumerate(self.laws):
             tets = np.flatnonzero(self.net.mesh.region == number)
             for start in range(0, len(tets), size):
@@ -226,6 +233,7 @@ class ArrayTangent:
             self.of.add(f, tets, law.derivative(H, dH))
         return f
 
-    def roughly(self, du: Floats) -> Floats:
-        """The same."""
-        return self.apply(du)
+    @property
+    def rough(self) -> None:
+        """None: functions in Python are asked in float64."""
+        return None

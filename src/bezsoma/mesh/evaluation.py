@@ -88,7 +88,7 @@ def gradient_controls(field: TetPolynomials, tets: Ints | slice) -> Floats:
     shifts = bernstein.shifts(field.degree, 3)
     lowest = local[:, shifts[:, 0]]
     steps = np.stack([local[:, shifts[:, i]] - lowest for i in (1, 2, 3)], axis=-1)
-    rows = steps.reshape(len(local), -1, 3) @ (field.degree * field.mesh.gradients[tets, 1:])
+    rows = steps.reshape(len(local), -1, 3) @ (field.degree * field.mesh.gradients_of(tets)[:, 1:])
     return np.asarray(rows.reshape(steps.shape))
 
 

@@ -175,13 +175,19 @@ class TetMesh:
         >>> bool(np.abs(edges @ mesh.gradients[0, 1:].T - np.eye(3)).max() < 1e-15)
         True
         """
-        corners = self.points[self.tets]
+        return frozen(self.gradients_of(slice(None)))
+
+    def gradients_of(self, tets: Ints | slice) -> Floats:
+        """The same of some tets (q, 4, 3), not kept."""
+        if "gradients" in self.__dict__:
+            return self.gradients[tets]
+        corners = self.points[self.tets[tets]]
         a, b, c = (corners[:, i] - corners[:, 0] for i in (1, 2, 3))
-        found = np.empty((len(self.tets), 4, 3))
+        found = np.empty((len(corners), 4, 3))
         found[:, 1], found[:, 2], found[:, 3] = cross(b, c), cross(c, a), cross(a, b)
         found[:, 1:] /= np.einsum("td,td->t", a, found[:, 1])[:, None, None]
         found[:, 0] = -found[:, 1:].sum(axis=1)
-        return frozen(found)
+        return found
 
     @cached_property
     def morton(self) -> Ints:

@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Floats, Numbers
 from bezsoma.errors import NotConverged
-from bezsoma.solvers.krylov import ROUGH, Operator, dot, length
+from bezsoma.solvers.krylov import ROUGH, Operator, Rough, corrected, dot, length
 
 RESTARTS = 10
 
@@ -20,7 +20,7 @@ def stabilised(
     b: Floats,
     rtol: float,
     most: int,
-    rough: Operator | None = None,
+    rough: Rough | None = None,
 ) -> tuple[Floats, int]:
     """x with |b - A x| <= rtol |b|, and how many times A was applied, two an iteration.
 
@@ -38,8 +38,16 @@ def stabilised(
     x, r = np.zeros_like(b), b.copy()
     applied = 0
     for _ in range(RESTARTS):
-        goal = max(rtol * whole, ROUGH * length(r)) if rough else rtol * whole
-        applied += _run(rough or apply, precondition, x, r, goal, most - applied)
+        left = most - applied
+        if rough:
+
+            def run(dx: Numbers, r: Numbers, goal: float, left: int = left) -> int:
+                return _run(rough, precondition, dx, r, max(goal, ROUGH), left)
+
+            applied += corrected(run, x, r, rtol * whole)
+            del r
+        else:
+            applied += _run(apply, precondition, x, r, rtol * whole, left)
         r = b - apply(x)
         applied += 1
         size = length(r)
@@ -54,10 +62,10 @@ def stabilised(
 
 
 def _run(
-    apply: Operator, precondition: Operator, x: Floats, r: Floats, target: float, most: int
+    apply: Rough, precondition: Rough, x: Numbers, r: Numbers, target: float, most: int
 ) -> int:
     """Iterate from x with residual r, both changed in place; gives the number of products."""
-    shadow, p, v = r.copy(), np.zeros_like(r), np.zeros_like(r)
+    shadow, p, v, part = r.copy(), np.zeros_like(r), np.zeros_like(r), np.empty_like(r)
     rho, alpha, omega = 1.0, 1.0, 1.0
     for applied in range(0, most, 2):
         before, rho = rho, dot(shadow, r)
@@ -65,25 +73,28 @@ def _run(
         if small or omega == 0 or not math.isfinite(rho):  # a law may answer with no numbers
             return applied
         beta = 0.0 if applied == 0 else rho / before * (alpha / omega)
-        p -= omega * v
+        p -= np.multiply(v, omega, out=part)
         p *= beta
         p += r
+        del v  # or it would stand beside the next
         forward = precondition(p)
         v = apply(forward)
         along = dot(shadow, v)
         if along == 0:
             return applied + 1
         alpha = rho / along
-        x += alpha * forward
-        r -= alpha * v
+        x += np.multiply(forward, alpha, out=part)
+        r -= np.multiply(v, alpha, out=part)
+        del forward
         if length(r) <= target:
             return applied + 1
         forward = precondition(r)
         t = apply(forward)
         squared = dot(t, t)
         omega = dot(t, r) / squared if squared else 0.0
-        x += omega * forward
-        r -= omega * t
+        x += np.multiply(forward, omega, out=part)
+        r -= np.multiply(t, omega, out=part)
+        del forward, t
         if length(r) <= target:
             return applied + 2
     return most

@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from bezsoma import _core
-from bezsoma.arrays import Bools, Floats, Ints
+from bezsoma.arrays import Bools, Floats, Ints, Numbers
 from bezsoma.equations.assembled import BlockMatrix
 from bezsoma.errors import NotConverged
 
@@ -29,7 +30,12 @@ RESTARTS = 3
 ROUGH = 1e-4
 """How far the residual is followed by rough products before it is formed anew."""
 
+AT_ONCE = 4096
+"""Numbers in float32 that are summed up in it: fewer than would show in the sum."""
+
 Operator = Callable[[Floats], Floats]
+Rough = Callable[[Any], Any]
+"""An operator on float32, right to six digits or so."""
 Report = Callable[[int, float], None]
 """Called with the number of the iteration and its relative residual."""
 
@@ -99,18 +105,40 @@ def incomplete_cholesky(
     )
 
 
-def dot(x: Floats, y: Floats) -> float:
-    """The sum of products of (c, 3) and (c, 3).
+def dot(x: Numbers, y: Numbers) -> float:
+    """The sum of products of (c, 3) and (c, 3), of float32 as exact as they are.
 
     Not by a BLAS: its threads would show in the last bits of the answer, and stall on a machine
     that is busy with something else.
     """
-    return float(np.einsum("ck,ck->", x, y))
+    if x.dtype != np.float32:
+        return float(np.einsum("ck,ck->", x, y))
+    x, y = x.ravel(), y.ravel()
+    whole = len(x) - len(x) % AT_ONCE
+    rows = [each[:whole].reshape(-1, AT_ONCE) for each in (x, y)]
+    parts = np.einsum("pk,pk->p", *rows)
+    rest = np.einsum("k,k->", *(each[whole:].astype(np.float64) for each in (x, y)))
+    return float(parts.sum(dtype=np.float64) + rest)
 
 
-def length(x: Floats) -> float:
+def length(x: Numbers) -> float:
     """The Euclidean norm of (c, 3)."""
     return math.sqrt(dot(x, x))
+
+
+def corrected(
+    way: Callable[[Numbers, Numbers, float], Any], x: Floats, r: Floats, whole: float
+) -> Any:
+    """Adds to x what `way(dx, r, whole)` finds for the residual r in float32; gives its answer.
+
+    As a linear system is refined: r is scaled to norm one and rounded, with what it is measured by.
+    """
+    size = length(r) or 1.0
+    small = np.divide(r, size, dtype=np.float32, casting="same_kind")
+    dx = np.zeros_like(small)
+    found = way(dx, small, whole / size)
+    x += np.multiply(dx, size, dtype=np.float64)
+    return found
 
 
 def conjugate_gradients(
@@ -121,7 +149,7 @@ def conjugate_gradients(
     most: int = MOST_ITERATIONS,
     report: Report | None = None,
     start: Floats | None = None,
-    rough: Operator | None = None,
+    rough: Rough | None = None,
 ) -> tuple[Floats, list[float]]:
     """x with |b - A x| <= rtol |b|, and |r| / |b| after each iteration, the first before any.
 
@@ -131,9 +159,9 @@ def conjugate_gradients(
     that the recursion carries drifts from the true one by rounding, so the true one decides: where
     it has not come down with it the iteration starts anew from there, `RESTARTS` times at most.
 
-    `rough` applies A to six digits or so. Then it serves the recursion, which is believed for as
-    long as the residual comes down to `ROUGH` of itself, and `apply` the true residual: as a linear
-    system is refined, so that x is as good as without.
+    `rough` applies A in float32. Then the recursion has all its vectors in float32, and is believed
+    until the residual has come down to `ROUGH` of itself; `apply` gives the true residual: as a
+    linear system is refined, so that x is as good as without. It takes half the memory and time.
     """
     whole = length(b)
     x, r = (np.zeros_like(b), b.copy()) if start is None else (start.copy(), b - apply(start))
@@ -141,7 +169,15 @@ def conjugate_gradients(
     runs = RESTARTS + 1 + (math.ceil(math.log(rtol) / math.log(ROUGH)) if rough else 0)
     for _ in range(runs):
         goal = max(rtol, ROUGH * history[-1]) if rough else rtol
-        _iterate(rough or apply, precondition, x, r, whole, goal, most, history, report)
+        if rough:
+
+            def run(dx: Numbers, left: Numbers, size: float, goal: float = goal) -> None:
+                _iterate(rough, precondition, dx, left, size, goal, most, history, report)
+
+            corrected(run, x, r, whole)
+            del r
+        else:
+            _iterate(apply, precondition, x, r, whole, goal, most, history, report)
         r = b - apply(x)
         before, history[-1] = history[-1], length(r) / whole
         if history[-1] <= rtol:
@@ -155,10 +191,10 @@ def conjugate_gradients(
 
 
 def _iterate(
-    apply: Operator,
-    precondition: Operator,
-    x: Floats,
-    r: Floats,
+    apply: Rough,
+    precondition: Rough,
+    x: Numbers,
+    r: Numbers,
     whole: float,
     rtol: float,
     most: int,
@@ -166,7 +202,7 @@ def _iterate(
     report: Report | None,
 ) -> None:
     """Iterate from x with residual r, both changed in place, until |r| <= rtol * whole."""
-    p, before = np.zeros_like(x), np.inf
+    p, part, before = np.zeros_like(x), np.empty_like(x), np.inf
     while history[-1] > rtol:
         if len(history) > most:
             raise NotConverged(_slow(history, rtol, most), history)
@@ -178,8 +214,9 @@ def _iterate(
         curvature = dot(p, q)
         if not (curvature > 0 and now > 0):
             raise NotConverged(_indefinite(history), history)
-        x += (now / curvature) * p
-        r -= (now / curvature) * q
+        x += np.multiply(p, now / curvature, out=part)
+        r -= np.multiply(q, now / curvature, out=part)
+        del z, q  # or they would stand beside the next
         before = now
         history.append(length(r) / whole)
         if report:

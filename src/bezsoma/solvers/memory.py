@@ -139,7 +139,7 @@ def _without(net: Counts, pressures: Counts | None, linear: bool) -> int:
         vectors = 18 if linear else 2 * KEPT + 25
     elif not linear:
         of_tets += 300 * tets
-        vectors = 55
+        vectors = 34
     return of_tets + 8 * vectors * unknowns + packed + 1500 * vertices
 
 

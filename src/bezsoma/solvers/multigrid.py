@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from bezsoma import _core
-from bezsoma.arrays import Bools, Floats, Int32s
+from bezsoma.arrays import Bools, Floats, Int32s, Numbers
 from bezsoma.equations.displacement import Equations
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.errors import NotConverged
@@ -29,24 +29,38 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
     Numer. Math. 66, 1994). Everything is float32 on a residual scaled to one, which
     costs no iteration; held (c, 3) says which components are prescribed.
     """
-    net = operator.net
-    # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
-    stiff = float(np.abs(operator.lame).max()) * net.mesh.mean_size
-    corners, places, held_vertices = degree_one(net, held)
-    walk = operator.walk(stiff)
-    return _core.Multigrid(operator.kernel, walk, corners, places, held, held_vertices)
+    stiff, parts = _parts(operator, held)
+    return _core.Multigrid(operator.kernel, operator.walk(stiff), *parts)
 
 
-def preconditioned(operator: MatrixFree, held: Bools) -> Callable[[Floats], Floats]:
-    """What takes r (c, 3) N to z (c, 3): `preconditioner`, built once, as a function."""
-    blocks = preconditioner(operator, held)
+def preconditioned(operator: MatrixFree, held: Bools) -> Callable[[Numbers], Numbers]:
+    """What takes r (c, 3) to z (c, 3) for another operator, a tangent: as `preconditioner`.
 
-    def z_of(r: Floats) -> Floats:
-        z = np.empty_like(r)
-        blocks.apply(np.ascontiguousarray(r), z)
+    Nothing of the linear law is kept but the blocks, its product least of all; r is of norm one or
+    so, in float64 or float32.
+    """
+    stiff, parts = _parts(operator, held)
+    inverse = _core.Inverse(operator.walk(stiff), *parts, operator.threads, operator.instructions)
+
+    def z_of(r: Numbers) -> Numbers:
+        z, r = np.empty_like(r), np.ascontiguousarray(r)
+        if r.dtype == np.float32:
+            inverse.apply_single(r, z)
+        else:
+            inverse.apply(r, z)
         return z
 
     return z_of
+
+
+def _parts(
+    operator: MatrixFree, held: Bools
+) -> tuple[float, tuple[Int32s | None, Floats, Bools, Bools]]:
+    """A stiffness that counts as one, and what says where degree 1 is and what is held."""
+    # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
+    stiff = float(np.abs(operator.lame).max()) * operator.net.mesh.mean_size
+    corners, places, held_vertices = degree_one(operator.net, held)
+    return stiff, (corners, places, held, held_vertices)
 
 
 def degree_one(net: ControlNet, held: Bools) -> tuple[Int32s | None, Floats, Bools]:

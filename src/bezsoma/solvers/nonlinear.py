@@ -73,12 +73,16 @@ class Loading:
         exactness_checked(self.exactness, "solve()")
 
     def exactness_for(self, degree: int) -> int:
-        """The exactness of the quadrature of laws: as given, or 2 n + 2 and at least 6.
+        """The exactness of the quadrature of laws: as given, or 2 n + 2.
+
+        At degree 1 strains are the same throughout a tet: one point is exact for any law.
 
         >>> Loading().exactness_for(1), Loading().exactness_for(3), Loading(exactness=9).exactness
-        (6, 8, 9)
+        (0, 8, 9)
         """
-        return max(2 * degree + 2, 6) if self.exactness is None else self.exactness
+        if self.exactness is not None:
+            return self.exactness
+        return 2 * degree + 2 if degree > 1 else 0
 
 
 def is_linear(body: Body) -> bool:
@@ -161,7 +165,8 @@ def _plain(
 ) -> Form:
     laws = _laws(body)
     internal = internal_forces(equations.net, laws, exactness, threads)
-    pointwise = Pointwise(equations.net, laws, exactness)
+    seldom = chosen == "multigrid" and method != "secant"  # then it is asked for the energy alone
+    pointwise = Pointwise(equations.net, laws, exactness, once=seldom)
     system = _system(equations, internal, pointwise, chosen, method, threads, waiting)
     if chosen == "multigrid" and body.degree > 1:
         system = replace(system, near=lambda t: _of_degree_one(equations, t, method, threads))

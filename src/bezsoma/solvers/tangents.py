@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import csc_array, csr_array, diags_array
 
-from bezsoma.arrays import Bools, Floats, Ints
+from bezsoma.arrays import Bools, Floats, Ints, Numbers
 from bezsoma.equations.nonlinear import NonlinearEquations
 from bezsoma.equations.pointwise import Pointwise, Tangent
 from bezsoma.equations.tangent_matrix import tangent_matrix
@@ -99,7 +99,9 @@ class Applied:
         return Correction(x.ravel() * size, count, event)
 
     def _solved(self, b: Floats, rtol: float) -> Correction:
-        apply, rough = self._free_product, self._rough_product
+        single = self.tangent.rough
+        apply = self._free_product
+        rough = None if single is None else lambda x: self._freed(single(x), x)
         how = (self.precondition, b, rtol, MOST_ITERATIONS)
         try:
             if not self.symmetric:
@@ -121,10 +123,7 @@ class Applied:
     def _free_product(self, x: Floats) -> Floats:
         return self._freed(self.tangent.apply(x), x)
 
-    def _rough_product(self, x: Floats) -> Floats:
-        return self._freed(self.tangent.roughly(x), x)
-
-    def _freed(self, f: Floats, x: Floats) -> Floats:
+    def _freed(self, f: Numbers, x: Numbers) -> Numbers:
         if self.follow is not None:
             f -= (self.follow @ x.ravel()).reshape(-1, 3)
         f[self.held] = 0.0
