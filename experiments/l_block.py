@@ -5,10 +5,13 @@ The L-shaped block of tests/l_block.py: pulled at one end, rollers elsewhere, so
 the inward edge is singular, where the displacement goes with r^0.5445. Run as
 
     python experiments/l_block.py [folder] [most unknowns]
+    python experiments/l_block.py far [folder] [most unknowns]
 
 It leaves l_block.csv and l_block.png in the folder (docs/images where none is given). Errors are in
 the energy norm, relative, from the energies of `ENERGY` and of each level; beside them stand those
-that the levels estimated. docs/theory/refinement.md discusses both.
+that the levels estimated. With `far` it goes on with degree 2 alone, to 300,000 unknowns: it leaves
+l_block_far.csv, and l_block_rates.png with the rates of all beside those of the best of meshes.
+docs/theory/refinement.md discusses all of it.
 """
 
 from __future__ import annotations
@@ -17,9 +20,11 @@ import csv
 import sys
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from math import log, sqrt
+from itertools import pairwise
+from math import log, pi, sqrt
 from pathlib import Path
 
+import numpy as np
 from matplotlib.figure import Figure
 
 import bezsoma as bz
@@ -83,6 +88,89 @@ def rate(found: list[Row]) -> float:
     return log(last.error / first.error) / log(last.unknowns / first.unknowns)
 
 
+def best(degree: int, smallest: float, power: float = -RATES[2]) -> tuple[float, float]:
+    """The tets and the error of the best mesh of tets that are as long as they are wide.
+
+    Up to constants, for an error of h^k r^(power - 1 - k) at the distance r from the edge, to 1 mm.
+    The least sum of squares for a number of tets has h = C r^b with
+
+        b = 2 (k + 1 - power) / (2 k + 3),  C = smallest^(1 - b),
+
+    down to r = h = `smallest`, where tets of that size surround the edge:
+
+        tets = 6 angle length (int r h^-3 dr + 1 / (2 smallest))
+        error^2 = int h^(2 k) r^(2 power - 1 - 2 k) dr + smallest^(2 power)
+    """
+    b = 2 * (degree + 1 - power) / (2 * degree + 3)
+    C = smallest ** (1 - b)
+
+    def integral(q: float) -> float:
+        return (1 - smallest ** (q + 1)) / (q + 1)
+
+    tets = 6 * (1.5 * pi) * 0.5 * (C**-3 * integral(1 - 3 * b) + 0.5 / smallest)
+    square = C ** (2 * degree) * integral(2 * degree * (b - 1) + 2 * power - 1)
+    return tets, sqrt(square + smallest ** (2 * power))
+
+
+def slopes(sizes: list[float], errors: list[float]) -> tuple[list[float], list[float]]:
+    """Numbers of tets, and the power at each over the last factor of eight or more."""
+    at, powers = [], []
+    for j in range(len(sizes)):
+        before = [i for i in range(j) if 8 * sizes[i] <= sizes[j]]
+        if before:
+            i = before[-1]
+            at.append(sizes[j])
+            powers.append(log(errors[j] / errors[i]) / log(sizes[j] / sizes[i]))
+    return at, powers
+
+
+def far(folder: Path, most: int) -> None:
+    """Degree 2 alone on more and more tets, level by level."""
+    found = bz.refined(l_body(l_mesh(), 2), most_unknowns=most).levels
+    with (folder / "l_block_far.csv").open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["tets", "unknowns", "energy", "estimated"])
+        for level in found:
+            error = f"{level.energy_error:.8g}"
+            writer.writerow([level.tets, level.unknowns, f"{level.energy:.12g}", error])
+
+
+def rates_picture(folder: Path) -> None:
+    """The powers of what was measured beside those of the best of meshes."""
+    figure = Figure(figsize=(7.5, 4.5), layout="constrained")
+    axes = figure.subplots()
+    measured: dict[int, list[tuple[float, float]]] = {}
+    with (folder / "l_block.csv").open() as stream:
+        for row in csv.DictReader(stream):
+            if row["way"] == "refined":
+                pair = (float(row["tets"]), float(row["estimated"]))
+                measured.setdefault(int(row["degree"]), []).append(pair)
+    with (folder / "l_block_far.csv").open() as stream:
+        measured[2] = [
+            (float(row["tets"]), float(row["estimated"])) for row in csv.DictReader(stream)
+        ]
+    for degree in DEGREES:
+        model = [best(degree, float(h)) for h in np.geomspace(0.2, 1e-8, 60)]
+        steps = [
+            (sqrt(a[0] * b[0]), log(b[1] / a[1]) / log(b[0] / a[0])) for a, b in pairwise(model)
+        ]
+        label = f"degree {degree}"
+        axes.semilogx(*zip(*steps, strict=True), color=COLOURS[degree])
+        tets, errors = map(list, zip(*measured[degree], strict=True))
+        axes.semilogx(*slopes(tets, errors), "o-", ms=4, lw=0.6, color=COLOURS[degree], label=label)
+    axes.axhline(RATES[2], color="black", lw=0.8, ls="--")
+    axes.set(
+        xlabel="tets",
+        ylabel="power of the number of tets",
+        ylim=(-0.6, -0.2),
+        xlim=(1e2, 1e9),
+        title="L-shaped block: how fast the error falls (lines: the best mesh; dots: measured)",
+    )
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+    figure.savefig(folder / "l_block_rates.png", dpi=110)
+
+
 def picture(found: list[Row], path: Path) -> None:
     """Errors against unknowns, with the slopes that theory gives."""
     figure = Figure(figsize=(7.5, 5.5), layout="constrained")
@@ -114,9 +202,14 @@ def picture(found: list[Row], path: Path) -> None:
 
 
 def main() -> None:
-    """Run all, write both files."""
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "docs/images")
-    most = int(sys.argv[2]) if len(sys.argv) > 2 else 60_000
+    """Run all, write the files."""
+    words = [word for word in sys.argv[1:] if word != "far"]
+    folder = Path(words[0] if words else "docs/images")
+    if len(words) < len(sys.argv) - 1:
+        far(folder, int(words[1]) if len(words) > 1 else 300_000)
+        rates_picture(folder)
+        return
+    most = int(words[1]) if len(words) > 1 else 60_000
     found = []
     for each in rows(most):
         found.append(each)

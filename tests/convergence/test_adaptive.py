@@ -3,7 +3,8 @@
 
 Uniform meshes win N^(-0.5445 / 3) = N^-0.18, at any degree. With small tets at the edge it is
 N^(-1/3) at degree 1, the best that degree has, and from degree 2 on N^-0.5445: tets that are as
-small along the edge as across it are as many as the edge is long in units of them.
+small along the edge as across it are as many as the edge is long in units of them. That is a limit,
+which degree 2 nears slowly: see docs/theory/refinement.md.
 """
 
 from __future__ import annotations
@@ -38,7 +39,9 @@ def test_uniform_meshes_creep() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("degree", "most", "least"), [(1, 10_000, -0.28), (2, 20_000, -0.40)])
+@pytest.mark.parametrize(
+    ("degree", "most", "least"), [(1, 10_000, -0.28), (2, 20_000, -0.43), (3, 20_000, -0.45)]
+)
 def test_small_tets_at_the_edge_run(degree: int, most: int, least: float) -> None:
     """`least` is what is seen at so few unknowns; experiments/l_block.py goes on to the limit."""
     found = refined(l_body(l_mesh(), degree), most_unknowns=most)

@@ -217,6 +217,25 @@ def test_what_a_loose_solve_leaves_counts_by_the_dual() -> None:
     assert again == pytest.approx(told, rel=0.03)
 
 
+def test_an_energy_is_wrong_by_that_of_what_was_left_alone() -> None:
+    """A step that is a fifth too short has 0.64 of the energy; 0.96 of it is told."""
+    richer = raised(solve(pressed(2, LinearElastic(E=1.0, nu=0.3))))
+    exact = richer.tangent.solve(richer.residual, 1e-12).dx
+    vars(richer)["step"] = 0.8 * exact
+    assert richer.gain == pytest.approx(0.96 * richer.square(exact), rel=1e-8)
+
+
+def test_one_degree_up_is_enough_at_degree_1() -> None:
+    """Beside two degrees up: what one sees and a fixed rest come to nearly the same."""
+    solution = solve(loaded(1, LinearElastic(E=1.0, nu=0.3), 4))
+    richer = raised(solution)
+    assert richer.body.degree == 2
+    more = energy_estimate(solution, richer=raised(solution, 2))
+    assert energy_estimate(solution, richer=richer).relative == pytest.approx(more.relative, 0.1)
+    one, two = (goal_estimate(solution, TOP, richer=r) for r in (richer, raised(solution, 2)))
+    assert abs(one.error - two.error) < 0.1 * two.product
+
+
 def test_a_patch_smaller_than_the_tets_has_a_dual_that_comes_slowly() -> None:
     """The product counts the dual's own rest: by the other rate it were 0.62 of it."""
     law, goal = LinearElastic(E=1.0, nu=0.3), replace(TOP, radius=0.15)

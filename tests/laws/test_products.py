@@ -9,7 +9,7 @@ import pytest
 from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.mechanics import Body, Fixed, LinearElastic
 from bezsoma.mesh import ControlNet, block
-from bezsoma.refinement.products import linear_product
+from bezsoma.refinement.products import displacement_product, linear_product
 from bezsoma.refinement.raised import raised
 from bezsoma.solvers.solve import solve
 from tolerances import ROUNDING
@@ -29,6 +29,19 @@ def test_the_tets_of_a_mixed_product_add_up_to_the_operator(soft: float) -> None
     )
     whole = np.concatenate([f.ravel(), g]) * b
     assert abs(product(a, b).sum() - whole.sum()) < ROUNDING * np.abs(whole).sum()
+
+
+@pytest.mark.parametrize("degree", [2, 5])
+def test_the_operator_gives_each_tet_what_gradients_give(degree: int) -> None:
+    mesh = block(cells=2, irregular=0.3)
+    net, pressures = ControlNet(mesh, degree), ControlNet(mesh, 1)
+    a, b = np.random.default_rng(7).standard_normal((2, 3 * net.count))
+    none = np.zeros(pressures.count)
+    lam = 0.6
+    gradients = linear_product(net, pressures, np.array([[lam, G, 0.0]]))
+    wanted = gradients(np.concatenate([a, none]), np.concatenate([b, none]))
+    found = displacement_product(net, np.array([[lam, G]]))(a, b)
+    assert abs(found - wanted).max() < ROUNDING * np.abs(wanted).max()
 
 
 def test_a_dual_of_the_solutions_own_degree_is_not_loose() -> None:

@@ -21,18 +21,32 @@ REFINING = (
     Mutant(
         "an energy estimate without what two degrees do not see",
         f"{REFINEMENT}/estimates.py",
-        "richer.squares(richer.correction) / share(rate, degree, 2)",
-        "richer.squares(richer.correction)",
+        "richer.gain / _seen(_rate(richer), richer)",
+        "richer.gain",
         ("tests/laws/test_estimates.py::test_beside_a_singular_edge",),
     ),
     Mutant(
         "a dual that is believed to come as fast as the displacement",
         f"{REFINEMENT}/estimates.py",
-        "_rate(richer.between.square(first.sharper), dual, degree),",
-        "_rate(richer.between.gain, richer.gain, degree),",
+        "_fall(duals[0].energy, last.energy, richer)",
+        "_fall(richer.between.gain, richer.gain, richer)",
         (
             "tests/laws/test_estimates.py::test_a_patch_smaller_than_the_tets_has_a_dual_that_comes_slowly",
         ),
+    ),
+    Mutant(
+        "an energy that forgets what the loose solve left",
+        f"{REFINEMENT}/raised.py",
+        'energy + float(np.einsum("i,i->", left, x))',
+        "energy",
+        ("tests/laws/test_estimates.py::test_an_energy_is_wrong_by_that_of_what_was_left_alone",),
+    ),
+    Mutant(
+        "forces of a tet whose controls stand in another order",
+        f"{REFINEMENT}/products.py",
+        "columns = np.lexsort((rank, part))",
+        "columns = np.arange(len(part))",
+        ("tests/laws/test_products.py",),
     ),
     Mutant(
         "a goal that forgets what the loose solve left",

@@ -23,7 +23,7 @@ from bezsoma.refinement.goals import Goal, PatchMean, SurfaceMean
 FINE = 0.25
 """Pieces that the rim of a mean cuts are bisected until their edges are this part of its radius.
 
-With 0.5 the sums over the tets of two meshes differed by as much as a solution of degree 4 erred."""
+With 0.5 the sums over tets of two meshes differed by as much as a solution of degree 4 erred."""
 
 
 def weights(goal: Goal, net: ControlNet) -> Floats:
