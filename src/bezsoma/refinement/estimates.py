@@ -162,7 +162,7 @@ def vector_estimate(
     """The mean of the displacement over a place, all three components, and its error, mm.
 
     Three duals in the degree of the solution tell what its components lack, each within 1 % of the
-    product; one of the higher degree, in the direction of that, tells the product itself. That takes
+    product; one of the higher degree, in the direction of that, tells the product. That takes
     about 1.3 times as long as one goal.
 
     Args:

@@ -55,10 +55,13 @@ def shaded(camera: Camera, layers: list[Layer], rays: int = 2) -> Shaded:
     light = np.empty((hit.size, 3), np.float32)
     light[:] = linear(np.array(BACKGROUND))
     found = np.flatnonzero(hit.ravel() >= 0)
-    standing = lamps(camera)
+    shown = np.zeros(len(model.layer), bool)
+    shown[hit.ravel()[found]] = True
+    sky, standing = _openness(model.scene, camera, layers, shown), lamps(camera)
     for start in range(0, len(found), _CHUNK):
         part = found[start : start + _CHUNK]
-        light[part] = model.light(hit.ravel()[part], weights.reshape(-1, 2)[part], standing)
+        at = hit.ravel()[part]
+        light[part] = model.light(at, weights.reshape(-1, 2)[part], sky[at], standing)
     light = light.reshape(*hit.shape, 3)
     model.draw_levels(light, hit, weights)
     return Shaded(
@@ -107,8 +110,6 @@ class _Model:
     """(r, 3) at the corners, 0 where there are none."""
     layer: npt.NDArray[np.int8]
     """(r,) which layer each triangle belongs to."""
-    open: Singles
-    """(r, 3) openness at the corners."""
     wires: Singles
     """(r, 3) height in pixels over the side opposite each corner where it is drawn, else inf."""
     layers: list[Layer]
@@ -135,18 +136,22 @@ class _Model:
             (ring[:, 2] > 0) != turned,
             np.concatenate(values),
             np.repeat(np.arange(len(layers), dtype=np.int8), [len(part) for part in corners]),
-            _openness(scene, camera, layers),
             np.concatenate(wires),
             layers,
         )
 
-    def light(self, hit: npt.NDArray[np.int32], weights: Singles, standing: Singles) -> Singles:
-        """Light (p, 3) that leaves the places hit towards the viewer, linear."""
+    def light(
+        self, hit: npt.NDArray[np.int32], weights: Singles, sky: Singles, standing: Singles
+    ) -> Singles:
+        """Light (p, 3) that leaves the places hit towards the viewer, linear.
+
+        sky (p, 3) is the openness at the corners of the triangles hit.
+        """
         bary = _three(weights)
         normal = _normalised(_mixed(bary, self.normals[hit]))
         outer = self.outer[hit]
         normal[~outer] *= -1
-        open_ = _mixed(bary, self.open[hit])
+        open_ = _mixed(bary, sky)
         layer = self.layer[hit]
         found = np.empty((len(hit), 3), np.float32)
         for number, one in enumerate(self.layers):
@@ -220,18 +225,25 @@ def _placed(
     return whole
 
 
-def _openness(scene: Scene, camera: Camera, layers: list[Layer]) -> Singles:
-    """Openness (r, 3) at the corners of all triangles, found once for each shading vertex."""
-    parts = []
+def _openness(scene: Scene, camera: Camera, layers: list[Layer], shown: Bools) -> Singles:
+    """Openness (r, 3) at the corners of the triangles that are shown (r,), 1 at others.
+
+    Found once for each shading vertex.
+    """
+    parts, begin = [], 0
     for layer in layers:
         surface = layer.surface
+        corners = surface.corners(surface.vertex)
+        mine, begin = shown[begin : begin + len(corners)], begin + len(corners)
         first = np.unique(surface.vertex, return_index=True)[1]
         points = camera.seen(surface.points.reshape(-1, 3)[first]).astype(np.float32)
         normals = (surface.normals.reshape(-1, 3)[first] @ camera.axes.T).astype(np.float32)
-        near = normals[:, 2] > -0.4
+        near = np.zeros(len(first), bool)
+        near[corners[mine]] = True
+        near &= normals[:, 2] > -0.4
         found = np.ones(len(first), np.float32)
         found[near] = openness(scene, points[near], normals[near])
-        parts.append(surface.corners(found[surface.vertex]))
+        parts.append(found[corners])
     return np.asarray(np.concatenate(parts), np.float32)
 
 
