@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
+import conftest
 from mutants import record, table
 from mutants.mutant import Mutant
 from mutants.planted import piece, rounds
+from mutants.workshop import PARTIAL
 
 
 def test_there_are_enough_half_of_them_in_the_core() -> None:
@@ -62,6 +64,27 @@ def test_both_texts_stand_where_one_can_be_chosen(text: str, old: str, new: str,
     begin, end, instead = piece(text, Mutant("", "x.cpp", old, new, ()), 7)
     found = text[:begin] + instead + text[end:]
     assert found == both.replace("E ", "bezsoma_error == 7 ").replace("(E)", "(bezsoma_error == 7)")
+
+
+def test_a_core_without_kernels_is_excused_only_where_it_is_meant_to_be_partial(
+    root: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A core for use that lacks kernels fails; the words looked for are those that it says."""
+    assert conftest.LACKS_KERNELS in (root / "src/core/bindings.hpp").read_text(encoding="utf-8")
+    lacks = ValueError(f"{conftest.LACKS_KERNELS} of that degree")
+    other = ValueError("degree must be 1 to 10")
+    assert list(PARTIAL) == [conftest.PARTIAL_CORE]
+    for flags, error, outcome in (
+        ({conftest.PARTIAL_CORE: ""}, lacks, ValueError),
+        (PARTIAL, lacks, pytest.skip.Exception),
+        (PARTIAL, other, ValueError),
+    ):
+        for name, value in flags.items():
+            monkeypatch.setenv(name, value)
+        call = conftest.pytest_runtest_call()
+        next(call)
+        with pytest.raises(outcome):
+            call.throw(error)
 
 
 def test_the_score_and_what_nothing_notices_is_argued() -> None:
