@@ -25,6 +25,8 @@ EXECUTED = ("tutorials/*.md", "adding/*.md", "coming_from.md")
 """The pages that are run, from top to bottom."""
 RUNNER = Path(__file__).with_name("page.py")
 AT_ONCE = 2
+SMALLEST = 5000
+"""Bytes; what is smaller is no picture."""
 KEPT = "executed"
 """The folder beside the built pages in which runs leave what they said and made."""
 
@@ -38,7 +40,11 @@ def run_page(page: Path, kept: Path) -> str:
     """Run a page; what went wrong, or nothing."""
     command = [sys.executable, str(RUNNER), str(page), str(kept)]
     ran = subprocess.run(command, capture_output=True, text=True, check=False)
-    return ran.stderr if ran.returncode else ""
+    if ran.returncode:
+        return ran.stderr
+    made = {file: kept / "files" / file for file in pictures(page)}
+    bare = [name for name, at in made.items() if not at.exists() or at.stat().st_size < SMALLEST]
+    return f"{page}: no picture came of {', '.join(bare)}" if bare else ""
 
 
 def pictures(page: Path) -> list[str]:
