@@ -39,6 +39,7 @@ WHAT = {
     "test_refinement": "Refinement",
     "test_results": "Results that are written",
     "test_rigid_motions": "Supports that leave something loose",
+    "test_seldom": "Met seldom",
 }
 
 
