@@ -11,9 +11,16 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
+from bezsoma.arrays import Floats
 from bezsoma.solvers import memory
 from bezsoma.solvers.load_steps import loaded
 from bezsoma.solvers.newton import Balance, Breakdown, Correction, Rule, System
+
+
+def spring_of_volume(H: Floats) -> Floats:
+    """A gas: nothing resists shear."""
+    return np.asarray(3 * np.trace(H, axis1=-2, axis2=-1)[..., None, None] * np.eye(3))
+
 
 REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: bz.Stiffening(0, 0.3, 5), "E of Stiffening = 0 MPa: it must be positive"),
@@ -41,6 +48,20 @@ REFUSED: list[tuple[Callable[[], Any], str]] = [
     (lambda: bz.FunctionLaw(lambda H: H[..., 0]), "one 3 x 3 stress for each H"),
     (lambda: bz.FunctionLaw(lambda H: H, derivative="exact"), "is not known"),
     (lambda: bz.FunctionLaw(lambda H: 0 * H), "zero or not finite"),
+    (lambda: bz.FunctionLaw(lambda H: -H), "its modulus there is -1 MPa, the largest of all 1,"),
+    (lambda: bz.FunctionLaw(spring_of_volume), "MPa, the largest of all 9"),
+    (
+        lambda: bz.FunctionLaw(lambda H: -H, finite=False, kappa=5.0),
+        "every small change of shape, apart from kappa",
+    ),
+    (
+        lambda: bz.FunctionLaw(lambda H: 2 * H, energy=lambda H: (H**2).sum((-2, -1)) / 2),
+        "and the stress does 0.06; mend one of them, or leave energy= out",
+    ),
+    (
+        lambda: bz.FunctionLaw(lambda H: H + H**3, energy=lambda H: (H**2).sum((-2, -1)) / 2),
+        "is not the derivative of its energy",
+    ),
     (lambda: bz.FunctionLaw(lambda H: H, derivative=lambda H, dH: dH[0]), "change of stress"),
     (lambda: bz.FunctionLaw(lambda H: H, energy=lambda H: np.zeros(())), "one number for each H"),
     (lambda: bz.FunctionLaw(lambda H: H, kappa=-1.0), "kappa of FunctionLaw"),
@@ -340,7 +361,10 @@ def test_tissue_that_folds_between_the_points_of_the_quadrature_is_told() -> Non
     supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0, 0, -1.5))]
     folded = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))
     (said,) = folded.path[-1].events
-    assert "turned inside out at corners of 6 of 6 tets" in said and "region 'tissue'" in said
+    assert (
+        "turned inside out at corners of 6 of 6 tets (100 % of the volume)" in said
+        and "region 'tissue'" in said
+    )
     assert folded.advice == said == folded.summary()["advice"] and said in repr(folded)
     supports[1] = bz.Moved("top", translation=(0, 0, -0.2))
     sound = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))

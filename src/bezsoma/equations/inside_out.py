@@ -26,25 +26,28 @@ def inside_out(net: ControlNet, laws: Sequence[Any], u: Floats) -> str:
     >>> inside_out(net, [NeoHooke(1.0, 0.3)], 0.5 * net.points)
     ''
     >>> inside_out(net, [NeoHooke(1.0, 0.3)], net.points * [0, 0, -1.5])[:60]
-    'the tissue is turned inside out at corners of 6 of 6 tets, J'
+    'the tissue is turned inside out at corners of 6 of 6 tets (1'
     """
     corners = bernstein.derivatives(net.degree, np.eye(4))
-    mesh, bad, worst = net.mesh, 0, (np.inf, -1, 0)
+    mesh, bad, worst = net.mesh, [], (np.inf, -1, 0)
     points = Pointwise(net, laws, 1, once=True)
     for law, tets in points.runs():
         if not getattr(law, "finite", False):
             continue
         J = np.linalg.det(np.eye(3) + points.gradients(u, tets, corners))
-        bad += int((J <= 0).any(axis=1).sum())
+        bad.append(tets[(J <= 0).any(axis=1)])
         t, corner = np.unravel_index(J.argmin(), J.shape)
         worst = min(worst, (float(J[t, corner]), int(tets[t]), int(corner)))
     J_least, tet, corner = worst
     if not J_least <= 0:
         return ""
+    touched = np.concatenate(bad)
+    part = mesh.volumes[touched].sum() / mesh.volumes.sum()
     place = ", ".join(f"{x:.4g}" for x in mesh.points[mesh.tets[tet, corner]])
     return (
-        f"the tissue is turned inside out at corners of {bad} of {len(mesh.tets)} tets, J = "
-        f"{J_least:.3g} in tet {tet} of region {mesh.regions[mesh.region[tet]]!r} at ({place}) mm: "
-        "the points of the quadrature did not see it, and the answer cannot be trusted there; take "
-        "a finer mesh, a higher exactness or a smaller motion"
+        f"the tissue is turned inside out at corners of {len(touched)} of {len(mesh.tets)} tets "
+        f"({100 * part:.3g} % of the volume), J = {J_least:.3g} in tet {tet} of "
+        f"region {mesh.regions[mesh.region[tet]]!r} at ({place}) mm: the points of the quadrature "
+        "did not see it, and the answer cannot be trusted there; take a finer mesh, a higher "
+        "exactness or a smaller motion"
     )

@@ -7,7 +7,7 @@ import numpy as np
 
 from bezsoma.arrays import Floats
 from bezsoma.equations.pointwise import Pointwise
-from bezsoma.mechanics.laws import Law, at_rest
+from bezsoma.mechanics.laws import Law, at_rest, nearest_isotropic
 
 SOFTEST = 0.1
 """A preconditioner has to stay positive: no modulus below this part of what it is at rest."""
@@ -19,8 +19,8 @@ modulus above so many times what it is at rest."""
 def moduli_at(pointwise: Pointwise, u: Floats) -> Floats:
     """Lame's lambda and mu [MPa] (t, 2) of each tet at u (c, 3) mm, from the middle of it.
 
-    Those of the isotropic law nearest to the tangent: C_iijj = 9 lambda + 6 mu and C_ijij =
-    3 lambda + 12 mu, as `at_rest` has it. What turns a tet does not show in them.
+    Those of the isotropic law nearest to the tangent (`nearest_isotropic`). What turns a tet does
+    not show in them.
 
     >>> from bezsoma.mechanics.stiffening import Stiffening
     >>> from bezsoma.mesh.control_net import ControlNet
@@ -42,19 +42,8 @@ def moduli_at(pointwise: Pointwise, u: Floats) -> Floats:
 
 def _near(law: Law, H: Floats) -> Floats:
     """Lambda and mu (t, 2) at H (t, 3, 3), kept positive."""
-    whole, swelling = np.zeros(len(H)), np.zeros(len(H))
     with np.errstate(all="ignore"):
-        for k in range(3):
-            for l in range(k, 3):
-                dH = np.zeros_like(H)
-                dH[:, k, l] += 0.5
-                dH[:, l, k] += 0.5
-                dP = law.derivative(H, dH)
-                whole += (dP[:, k, l] + dP[:, l, k]) / (1 if k != l else 2)
-                if k == l:
-                    swelling += np.trace(dP, axis1=1, axis2=2)
-    mu = (3 * whole - swelling) / 30
-    kappa = swelling / 9
+        kappa, mu = nearest_isotropic(law, H)
     lam, rest = at_rest(law)
     mu = np.clip(np.where(np.isfinite(mu), mu, rest), SOFTEST * rest, STIFFEST * rest)
     bulk = lam + 2 * rest / 3

@@ -16,6 +16,7 @@ import numpy as np
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError
 from bezsoma.mechanics.compiled import bulk
+from bezsoma.mechanics.law_checks import refuse_other_energy, stiffness_at_rest
 from bezsoma.mechanics.materials import Material
 
 Stress = Callable[[Floats], Floats]
@@ -82,7 +83,8 @@ class FunctionLaw:
     doi:10.1137/S003614459631241X), but not of abs, eigenvalues or max;
     derivative="differences" takes central differences instead, right to some nine digits, with
     which Newton's last steps are not quadratic. `energy(H)`, if given, says that the stress is its
-    derivative, so the tangent is symmetric.
+    derivative, so the tangent is symmetric; that is looked at in four states. At rest the stress
+    has to resist every small strain: a law that gives way by itself is refused.
 
     With a `kappa` [MPa] the functions are those of the shape alone, and kappa/2 (J - 1)^2 is added
     (kappa/2 tr^2 at small strain): then the law can also go with a pressure, kappa = inf allowed.
@@ -311,7 +313,10 @@ class Secant:
 
 
 def _answers(law: FunctionLaw) -> None:
-    """Refuses a function that does not answer with stress at rest, or cannot be differentiated."""
+    """Refuses a function that does not answer with stress at rest, or cannot be differentiated.
+
+    Also one that does not resist strain there, and an energy that is another law's.
+    """
     rest = np.zeros((2, 3, 3))
     law.shape_stress(rest)  # not with that of the volume: kappa may be infinite
     try:
@@ -323,30 +328,51 @@ def _answers(law: FunctionLaw) -> None:
             f"the derivative of FunctionLaw cannot be taken ({error.__cause__ or error}); give "
             "derivative=a function of (H, dH), or 'differences'"
         ) from error
-    law.shape_energy(rest)
+    law.shape_energy(rest)  # whether it answers at all
     if not (np.isfinite(slope).all() and np.any(slope)):
         raise InputError(
             "the derivative of FunctionLaw at rest is zero or not finite: a complex step needs a "
             "function that works with complex numbers; give derivative=... or 'differences'"
         )
+    modulus = stiffness_at_rest(law.shape_slope, volume=law.kappa is None)
+    if law.stored is not None:
+        refuse_other_energy(law.shape_stress, law.shape_energy, modulus)
+
+
+def nearest_isotropic(law: Law, H: Floats) -> tuple[Floats, Floats]:
+    """The moduli kappa and mu [MPa] (t,) of the isotropic law near the tangent at H (t, 3, 3).
+
+    The nearest, with the same C_iijj = 9 kappa and C_ijij = 3 kappa + 10 mu: what a preconditioner
+    needs.
+
+    >>> from bezsoma.mechanics.materials import LinearElastic
+    >>> [x.round(12).tolist() for x in nearest_isotropic(LinearElastic(2.5, 0.25), np.eye(3)[None])]
+    [[1.666666666667], [1.0]]
+    """
+    whole, swelling = np.zeros(len(H)), np.zeros(len(H))
+    for k in range(3):
+        for l in range(k, 3):
+            dH = np.zeros_like(H)
+            dH[:, k, l] += 0.5
+            dH[:, l, k] += 0.5
+            dP = law.derivative(H, dH)
+            whole += (dP[:, k, l] + dP[:, l, k]) / (1 if k != l else 2)
+            if k == l:
+                swelling += np.trace(dP, axis1=1, axis2=2)
+    return swelling / 9, (3 * whole - swelling) / 30
 
 
 def at_rest(law: Law) -> tuple[float, float]:
     """Lame's lambda and mu (MPa) of the linear law that a law is near rest.
 
-    Of an anisotropic law, those of the nearest isotropic one: C_iijj = 9 lambda + 6 mu and
-    C_ijij = 3 lambda + 12 mu. A preconditioner needs no more.
+    Of an anisotropic law, those of the nearest isotropic one.
 
     >>> from bezsoma.mechanics.materials import LinearElastic
     >>> [round(modulus, 12) for modulus in at_rest(LinearElastic(E=2.5, nu=0.25))]
     [1.0, 1.0]
     """
-    units = np.eye(9).reshape(9, 3, 3)
-    units = (units + np.swapaxes(units, 1, 2)) / 2
-    C = law.derivative(np.zeros((9, 3, 3)), units).reshape(3, 3, 3, 3)
-    swelling, whole = np.einsum("iijj", C), np.einsum("ijij", C)
-    mu = (3 * whole - swelling) / 30
-    return float((swelling - 6 * mu) / 9), float(mu)
+    (kappa,), (mu,) = nearest_isotropic(law, np.zeros((1, 3, 3)))
+    return float(kappa - 2 * mu / 3), float(mu)
 
 
 def shear_at_rest(law: MixedLaw) -> float:

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a law of the user's own is asked before it is believed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from bezsoma.arrays import Floats
+from bezsoma.errors import InputError
+
+LEAST = 1e-12
+"""A modulus below this part of the largest is none but rounding."""
+STEP = 1e-5
+APART, FLOOR = 1e-3, 1e-4
+"""How far stress and the slope of energy may be apart, of the stress there and of the modulus at
+rest: differences of a law with a kink are right to some `STEP`, wrong factors are not so near."""
+
+
+def _strains(volume: bool) -> Floats:
+    """An orthonormal basis of the symmetric H, of those without a change of volume unless asked."""
+    basis = np.zeros((6, 3, 3))
+    basis[0] = np.eye(3) / np.sqrt(3)
+    basis[1] = np.diag([1, -1, 0]) / np.sqrt(2)
+    basis[2] = np.diag([1, 1, -2]) / np.sqrt(6)
+    for row, (k, l) in enumerate(((0, 1), (1, 2), (2, 0)), start=3):
+        basis[row, k, l] = basis[row, l, k] = 1 / np.sqrt(2)
+    return basis if volume else basis[1:]
+
+
+def stiffness_at_rest(slope: Callable[[Floats, Floats], Floats], volume: bool) -> float:
+    """The largest modulus [MPa] at rest, H = 0; refuses a law that does not resist every strain.
+
+    Or every change of shape alone, where the volume has a law of its own. The modulus for a strain
+    e of norm one is e : C : e.
+
+    >>> round(stiffness_at_rest(lambda H, dH: 2 * dH, volume=True), 12)
+    2.0
+    """
+    strains = _strains(volume)
+    C = np.einsum("akl,bkl->ab", strains, slope(np.zeros_like(strains), strains))
+    moduli, directions = np.linalg.eigh((C + C.T) / 2)
+    largest = float(np.abs(moduli).max())
+    if moduli[0] > LEAST * largest:
+        return largest
+    worst = np.einsum("a,akl->kl", directions[:, 0], strains)
+    raise InputError(
+        f"FunctionLaw does not resist the small strain {_told(worst)} at rest: its modulus there "
+        f"is {moduli[0]:.3g} MPa, the largest of all {largest:.3g}, so that a body of it gives way "
+        "by itself; the stress has to grow with "
+        + ("every small strain" if volume else "every small change of shape, apart from kappa")
+        + ": look at its sign, and for a part that is missing"
+    )
+
+
+def refuse_other_energy(
+    stress: Callable[[Floats], Floats], energy: Callable[[Floats], Floats], modulus: float
+) -> None:
+    """Refuses an energy of which the stress is not the derivative, at rest and three states more.
+
+    >>> refuse_other_energy(lambda H: H, lambda H: (H**2).sum(axis=(-2, -1)), modulus=1.0)
+    Traceback (most recent call last):
+        ...
+    bezsoma.errors.InputError: the stress of FunctionLaw is not the derivative of its energy: ...
+    """
+    states, ways = np.zeros((4, 1, 3, 3)), np.zeros((1, 3, 3, 3))
+    states[1, 0] = np.diag([0.1, -0.04, -0.02])
+    states[2, 0, 0, 1], states[2, 0, 1, 0] = 0.08, 0.02
+    states[3, 0] = [[0.03, -0.02, 0.01], [0.04, 0.05, -0.03], [0.02, 0.01, -0.06]]
+    ways[0, 0] = np.diag([0.5, 0.7, -0.4])
+    ways[0, 1] = [[0.0, 0.8, 0.0], [0.3, 0.0, 0.5], [0.0, 0.5, 0.0]]
+    ways[0, 2] = [[0.2, 0.1, -0.4], [0.3, -0.6, 0.2], [0.5, 0.1, 0.3]]
+    H, dH = np.broadcast_arrays(states, ways)
+    with np.errstate(all="ignore"):
+        P = stress(H)
+        found = (energy(H + STEP * dH) - energy(H - STEP * dH)) / (2 * STEP)
+        wanted = np.einsum("swkl,swkl->sw", P, dH)
+        apart = np.abs(found - wanted)
+        bound = APART * np.abs(P).max(axis=(-2, -1)) + FLOOR * modulus
+    wrong = np.argwhere(np.isfinite(apart) & (apart > bound))  # an exponential may overflow here
+    if len(wrong):
+        s, w = wrong[0]
+        raise InputError(
+            "the stress of FunctionLaw is not the derivative of its energy: at H = "
+            f"{_told(H[s, w])} the energy changes by {found[s, w]:.4g} N/mm2 along "
+            f"{_told(dH[s, w])}, and the stress does {wanted[s, w]:.4g}; mend one of them, or "
+            "leave energy= out, and the tangent is not taken for symmetric"
+        )
+
+
+def _told(H: Floats) -> str:
+    return str(np.round(H, 3).tolist())
