@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
-from bezsoma.errors import NotConverged
+from bezsoma.errors import InputError, NotConverged
 from bezsoma.mechanics import Fixed, LinearElastic, Moved, NeoHooke, Traction
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.solids import block
@@ -142,6 +142,32 @@ def test_a_later_level_that_fails_ends_the_levels(monkeypatch: pytest.MonkeyPatc
     calls[:] = [None, None]
     with pytest.raises(NotConverged):
         refined(l_body(l_mesh(), 1), energy=1e-3)
+
+
+def test_an_estimate_that_fails_leaves_its_solution(monkeypatch: pytest.MonkeyPatch) -> None:
+    plain, calls = loop.estimated, []
+
+    def failing(*given: Any) -> Any:
+        calls.append(given[0])
+        if len(calls) == 3:
+            raise NotConverged("it did not", [1.0])
+        return plain(*given)
+
+    monkeypatch.setattr(loop, "estimated", failing)
+    found = refined(l_body(l_mesh(), 1), energy=1e-3)
+    assert (
+        found.why == "level 2 could not be estimated: it was solved, but not its error: it did not"
+    )
+    assert found.solution is calls[1] and len(found.levels) == 2
+    calls[:] = [None, None]
+    with pytest.raises(NotConverged, match="it was solved, but not its error") as caught:
+        refined(l_body(l_mesh(), 1), energy=1e-3)
+    assert caught.value.last is calls[2] and caught.value.fraction == 1.0
+
+
+def test_a_degree_whose_error_cannot_be_estimated_is_refused_before_it_is_solved() -> None:
+    with pytest.raises(InputError, match="degree 9 was given, and 8 is the highest"):
+        refined(l_body(l_mesh(), 9), energy=1e-3)
 
 
 def test_the_same_levels_come_again() -> None:

@@ -14,6 +14,7 @@ from PIL import Image
 
 from bezsoma.errors import InputError, MissingExtra
 from bezsoma.mesh import ControlNet, Field, TetMesh, block
+from bezsoma.mesh.solids import ball
 from bezsoma.view import Shot, convergence_picture, film, movie, picture, side_by_side, window
 from bezsoma.view.camera import Camera, around, axes, fitted, turned
 from bezsoma.view.film import angles, shares
@@ -130,6 +131,30 @@ def test_a_cut_hides_what_stood_behind_it_before_the_move() -> None:
     missed = Shot(mesh, displacement=shot.displacement, before=True, plane="z=8").checked("")
     below = fitted("top", missed.subject.points(), SMALL)
     assert missed.seen(below).strokes[0].label == "before"  # cut after the move alone
+
+
+def test_a_cut_shows_the_outline_of_what_stood_there_before_the_move() -> None:
+    mesh = ball(30.0, cells=4)
+    shift = field(mesh, 1, lambda p: np.array([3.0, 0.0, 1.0]) + 0 * p)
+    shot = Shot(mesh, displacement=shift, before=True, plane="y=1").checked("")
+    camera = fitted("front", shot.subject.points(), SMALL)
+    (strokes,) = shot.seen(camera).strokes
+    ends = strokes.segments.reshape(-1, 2) - camera.pixels(np.zeros((1, 3)))
+    radii = np.linalg.norm(ends, axis=1) / camera.scale
+    assert len(radii) > 30 and radii.min() > 0.9 * 30 and radii.max() <= 30
+    turned = np.sort(np.arctan2(*ends.T))
+    assert np.diff(turned, append=turned[0] + 2 * np.pi).max() < 0.5  # it goes all the way round
+
+
+@pytest.mark.parametrize("plane", ["x=20", "x=20.5"])
+def test_a_plane_may_cut_what_came_to_it_by_the_move_alone(plane: str) -> None:
+    mesh = bar()
+    drawn_out = field(mesh, 1, lambda p: p * [0.1, 0, 0])
+    shot = Shot(mesh, displacement=drawn_out, before=True, plane=plane).checked("")
+    camera = fitted("right", shot.subject.points(), SMALL)
+    seen = shot.seen(camera)
+    assert seen.strokes[0].label == "before"
+    assert any(np.ptp(part.surface.points[..., 0]) < 1e-9 for part in seen.solid)
 
 
 def test_the_control_net_is_drawn_at_the_controls_and_not_on_the_surface() -> None:

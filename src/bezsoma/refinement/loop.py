@@ -96,14 +96,21 @@ def refined(
         how: what else `solve` takes: solver, rtol, threads, steps, method, exactness, start.
 
     Raises:
-        InputError: a tolerance that is not positive, no place for one, and what `solve` refuses.
-        NotConverged: the first level did. Where a later one fails, the levels end before it.
+        InputError: a tolerance that is not positive, no place for one, a degree above 8, whose
+            error cannot be estimated, and what `solve` refuses.
+        NotConverged: the first level did, or its estimate; then `last` is its solution. Where a
+            later one fails, the levels end before it.
     """
     wish = _wish(body, tolerance, at, energy, by, most_unknowns, most_seconds)
     if unknowns(body) > wish.most_unknowns:
         raise InputError(
             f"the first level has {unknowns(body)} unknowns already, and most_unknowns = "
             f"{wish.most_unknowns}; begin with a coarser mesh or a lower degree, or allow more"
+        )
+    if body.degree > HIGHEST:
+        raise InputError(
+            f"degree {body.degree} was given, and {HIGHEST} is the highest whose error is "
+            "estimated; take that or less, or solve() without an estimate"
         )
     run = _Run(wish, how, progress or (lambda stage, done, note: None))
     return run.levels(body)
@@ -158,6 +165,8 @@ class _Run:
         self.wish, self.how, self.progress = wish, dict(how), progress
         self.began = perf_counter()
         self.done: list[Level] = []
+        self.under_way = "solved"
+        """What is done with the level under way."""
 
     def levels(self, body: Body) -> Refined:
         """All of them."""
@@ -175,14 +184,25 @@ class _Run:
                 try:
                     solution, estimates = self._solved(now)
                 except (NotConverged, InputError) as failure:
-                    why, reached = f"level {len(self.done)} could not be solved: {failure}", False
+                    why = f"level {len(self.done)} could not be {self.under_way}: {failure}"
+                    reached = False
             if why:
                 return self._ended(solution, estimates, reached, why)
 
     def _solved(self, now: _Next) -> tuple[Solution, Estimates]:
+        self.under_way = "solved"
         solution = solve(now.body, start=now.start, progress=self._told, **self.how)
         self._told("estimating", None, f"{len(self.wish.goals)} goals")
-        return solution, estimated(solution, self.wish.goals, self.how.get("threads"))
+        self.under_way = "estimated"
+        try:
+            return solution, estimated(solution, self.wish.goals, self.how.get("threads"))
+        except NotConverged as failure:
+            raise NotConverged(
+                f"it was solved, but not its error: {failure}",
+                failure.history,
+                last=solution,
+                fraction=1.0,
+            ) from failure
 
     def _told(self, stage: str, done: float | None, note: str) -> None:
         self.progress(stage, done, f"level {len(self.done)}: {note}")

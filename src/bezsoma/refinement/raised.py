@@ -135,7 +135,11 @@ class Raised:
 
     @cached_property
     def gain(self) -> float:
-        """The energy of the correction, N mm, had it been solved for exactly: `told`."""
+        """The energy of the correction, N mm, had it been solved for exactly: `told`.
+
+        What is prescribed has its part in the correction where it is no polynomial; there a part
+        of first order in what was left stays, a thousandth where it was looked for.
+        """
         return self.told(self.square(self.correction), self.step, self.left)
 
     def told(self, energy: float, x: Floats, left: Floats) -> float:

@@ -4,7 +4,8 @@
 Beside an edge where stress is singular an error falls with the degree k on fixed tets like a power
 of k, and so two more degrees see a part of it only. With k, k + 1 and k + 2 at hand the power can
 be told (B. A. Szabo and I. Babuska, Finite Element Analysis, 1991, sec. 4.2: the same from the
-energies of three degrees).
+energies of three degrees). Above degree 1 only degree 2 is looked at, and the power is taken as
+`FIRST`.
 """
 
 from __future__ import annotations

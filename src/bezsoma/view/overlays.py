@@ -54,13 +54,21 @@ class Screen:
         return np.asarray(np.stack([flat[:, :-1], flat[:, 1:]], axis=2)[seen])
 
 
-def wireframe(subject: Subject, screen: Screen, kept: Bools | None = None) -> Strokes:
-    """The edges of the surface as it was, hidden by what `screen` holds."""
+def wireframe(
+    subject: Subject, screen: Screen, kept: Bools | None = None, rim: Floats | None = None
+) -> Strokes:
+    """The edges of the surface as it was, hidden by what `screen` holds.
+
+    Of a body cut open they are those between vertices that are `kept` (v,); the `rim` (s, 2, 3)
+    of the cut, which nothing is left to hide, is drawn whole.
+    """
     edges = np.unique(subject.facets[:, np.array(SIDES)].reshape(-1, 2), axis=0)
     if kept is not None:
         edges = edges[kept[edges].all(axis=1)]
     points = subject.mesh.points
     segments = screen.segments(points[edges[:, 0]], points[edges[:, 1]])
+    if rim is not None:
+        segments = np.concatenate([segments, screen.camera.pixels(rim)])
     return Strokes(segments, "before", BEFORE, width=1.0)
 
 

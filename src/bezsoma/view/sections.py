@@ -106,12 +106,19 @@ class Section:
         numbers = measured(values.reshape(*values.shape[:2], -1), measure)
         return pieces, corners_of(numbers, parts)
 
-    def face_before(self) -> list[Drawn]:
-        """The face that the plane cut into the body before the move; none where it missed it."""
-        kept = self.kept()
-        if kept.all() or not kept.any():
-            return []
-        return [Section(self.mesh, self.plane, None, False).face(None, None, False)[0]]
+    def face_before(self) -> tuple[Drawn, Floats] | None:
+        """The face that the plane cut into the body before the move; None where it missed it.
+
+        With it the straight lines (s, 2, 3) of its rim, in mm.
+        """
+        heights = self.plane.heights(self.mesh.points)
+        grain = _ROUNDING * float(np.ptp(self.mesh.points))
+        if heights.min() >= -grain or heights.max() <= grain:
+            return None
+        face, _ = Section(self.mesh, self.plane, None, False).face(None, None, False)
+        corners = face.corners(face.points)
+        sides = np.stack([corners[:, [1, 2]], corners[:, [2, 0]], corners[:, [0, 1]]], axis=1)
+        return face, np.asarray(sides[face.rims])
 
     def _normals(self, cut: Level, inner: Floats) -> Floats:
         """The unit normals (r, b, 3) of the face."""

@@ -158,11 +158,14 @@ class Shot:
         if self.before:
             facets = np.concatenate([self.subject.facets, self.subject.rest])
             old: Drawn = displaced(self.mesh, facets, None)
-            hiding, kept = [old], None
+            hiding, kept, rim = [old], None, np.empty((0, 2, 3))
             if section is not None:
                 kept = section.kept()
-                hiding = [clipped(old, section.plane.heights(old.points)), *section.face_before()]
-            strokes.append(wireframe(self.subject, Screen.of(camera, hiding), kept))
+                hiding = [clipped(old, section.plane.heights(old.points))]
+                if (cut := section.face_before()) is not None:
+                    face, rim = cut
+                    hiding.append(face)
+            strokes.append(wireframe(self.subject, Screen.of(camera, hiding), kept, rim))
         if self.net:
             screen = Screen.of(camera, [part.surface for part in solid])
             whole = None if section is None else section.keeps(self.subject.facets)
