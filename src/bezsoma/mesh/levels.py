@@ -167,7 +167,7 @@ def off_the_body(mesh: TetMesh, plane: Plane, displacement: Field | None) -> str
     normal = np.array(plane.normal)
     axis = int(np.abs(normal).argmax())
     if abs(normal[axis]) == 1.0:
-        along = normal[axis] * (above + plane.offset)
+        along = normal[axis] * (above + plane.offset) + 0.0  # no -0
         reach = f"from {'xyz'[axis]} = {along.min():.4g} to {along.max():.4g} mm"
     else:
         reach = f"from {above.min():.4g} to {above.max():.4g} mm above that plane"
