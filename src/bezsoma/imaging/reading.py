@@ -62,7 +62,7 @@ def read_volume(
     `Volume.notes` say what had to be changed. No name, number or date of a patient is read.
     Reading happens in a process of its own (`child`, to share one between many files).
     """
-    place = _existing(path)
+    place = readable(path)
     with _reader(child) as reader:
         if place.is_dir():
             volume = read_series(place, reader, series, interpolate)
@@ -86,7 +86,7 @@ def read_volume(
 
 def dicom_series(folder: str | os.PathLike[str]) -> list[str]:
     """What series a folder holds: UID, number of slices, modality, and what it is called."""
-    place = _existing(folder)
+    place = readable(folder)
     if not place.is_dir():
         raise InputError(f"{folder} is a file; a folder of DICOM slices is needed")
     with Child() as reader:
@@ -104,7 +104,7 @@ def read_segmentation(
     Slicer's names are taken from the file; `names` gives or changes those of numbers. Numbers that
     nobody names become "label 7". Segments of several layers may overlap and stay apart.
     """
-    place = _existing(path)
+    place = readable(path)
     with _reader(child) as reader:
         answer, values = reader.answer(
             str(path), what="image", path=str(place), io=_io(place), most=MOST_VOXELS, layers=True
@@ -151,13 +151,19 @@ def _segments(
     return found
 
 
-def _existing(path: str | os.PathLike[str]) -> Path:
+def readable(path: str | os.PathLike[str]) -> Path:
+    """The path of a folder, or of a file whose name ends as one that is read and that holds bytes.
+
+    Raises `InputError` where it is none.
+    """
     place = Path(path)
     if not place.exists():
         raise InputError(f"no file or folder {str(path)!r}; a path is relative to where you are")
     if place.is_dir():
         return place
     _io(place)
+    if not place.is_file():
+        raise InputError(f"{path} is neither a file nor a folder; give the CT itself")
     if place.stat().st_size == 0:
         raise InputError(f"{path} is empty (0 bytes); copy it again")
     return place

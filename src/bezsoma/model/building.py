@@ -21,7 +21,7 @@ from bezsoma.imaging.labelling import Labels, labels
 from bezsoma.imaging.meaning import AIR, NAMES
 from bezsoma.imaging.nrrd import write_segmentation
 from bezsoma.imaging.plates import label_plates, legend
-from bezsoma.imaging.reading import read_segmentation, read_volume
+from bezsoma.imaging.reading import read_segmentation, read_volume, readable
 from bezsoma.imaging.slicer import read_landmarks, write_landmarks
 from bezsoma.imaging.tetrahedra import FaceMesh, face_mesh, sizes_for
 from bezsoma.mesh import TetMesh, read_mesh, write_mesh
@@ -102,6 +102,8 @@ def run_model(
             "is; choose another folder with -o"
         )
     progress("look", None, f"at {ct.name} and the folder")
+    for picture in (ct,) if given is None else (ct, given):
+        readable(picture)
     source = source_of(ct)
     with ModelFolder.at(folder, source, overwrite=overwrite) as place:
         return _made(ct, given, place, settings, source, progress)

@@ -3,8 +3,8 @@
 
 A stage fills a hidden folder. When that is whole, `model.json` says so, and its files take their
 places one after the other, those of later stages, which no longer fit, going first. Whatever stops
-a run before leaves no part of the stage under way; what stops it amid these steps is made good by
-the next run, which finishes them.
+a run before leaves no part of the stage under way, and before the first is done no folder; what
+stops it amid these steps is made good by the next run, which finishes them.
 """
 
 from __future__ import annotations
@@ -56,7 +56,12 @@ class ModelFolder:
         with ExitStack() as held:
             with written(place):
                 held.enter_context(locked(place))
-            yield cls._entered(path, place, source, overwrite)
+            new = not place.exists()
+            folder = cls._entered(path, place, source, overwrite)
+            try:
+                yield folder
+            finally:
+                folder._leave(new)
 
     @classmethod
     def _entered(cls, path: Path | str, place: Path, source: str, overwrite: bool) -> ModelFolder:
@@ -66,6 +71,8 @@ class ModelFolder:
                 f"{str(path)!r} exists and is no model of BezSoma, so nothing in it is touched; "
                 "choose another folder with -o"
             )
+        if record and not (record["stages"] or PENDING in record):
+            record = None  # left by a run that was killed early: a claim on nothing
         if record and record["source"] != source and not overwrite:
             raise InputError(
                 f"{str(path)!r} holds the model of another picture; choose another folder with -o, "
@@ -81,6 +88,14 @@ class ModelFolder:
             folder.record["source"] = source
             folder._save()
         return folder
+
+    def _leave(self, new: bool) -> None:
+        """Take away what a run that finished no stage made: its record, the folder if `new`."""
+        if self.record["stages"] or PENDING in self.record:
+            return
+        (self.place / RECORD).unlink(missing_ok=True)
+        if new and not any(self.place.iterdir()):
+            self.place.rmdir()
 
     def _check_room(self) -> None:
         free = shutil.disk_usage(self.place.parent).free
