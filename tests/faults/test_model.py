@@ -354,16 +354,60 @@ def test_a_model_in_the_folder_of_its_ct_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "line"), [("a.mhd", "ElementDataFile = a b.raw"), ("a.nhdr", "data file: ./a b.raw")]
+    ("name", "lines"),
+    [
+        ("a.mhd", "ElementDataFile = a b.raw"),
+        ("a.mha", "ElementDataFile = a b.raw"),
+        ("a.mhd", "ElementDataFile = a %c.raw 98 98 1"),
+        ("a.mhd", "ElementDataFile = LIST 2\na b.raw"),
+        ("a.nhdr", "data file: ./a b.raw"),
+        ("a.nrrd", "datafile: a b.raw"),
+        ("a.nhdr", "data file: a %c.raw 98 98 1"),
+        ("a.nhdr", "data file: LIST\na b.raw"),
+    ],
 )
-def test_values_beside_a_header_count_as_the_picture(name: str, line: str, tmp_path: Path) -> None:
+def test_values_beside_a_header_count_as_the_picture(name: str, lines: str, tmp_path: Path) -> None:
     header, values = tmp_path / name, tmp_path / "a b.raw"
-    header.write_text(f"NDims = 3\n{line}\n")
+    header.write_text(f"NDims = 3\n{lines}\n")
     known = []
     for content in (b"one", b"two"):
         values.write_bytes(content)
         known.append(source_of(header))
     assert known[0] != known[1]
+
+
+def test_slices_by_a_pattern_count_as_the_picture(tmp_path: Path) -> None:
+    """As SimpleITK takes it, which reads them."""
+    import SimpleITK as sitk  # noqa: N813
+
+    header, size = tmp_path / "a.mhd", (10, 12, 14)
+    header.write_text(
+        f"ObjectType = Image\nNDims = 3\nDimSize = {' '.join(map(str, size))}\n"
+        "ElementType = MET_SHORT\nElementSpacing = 3 3 3\nElementDataFile = s%03d.raw 0 13 1\n"
+    )
+    for k in range(size[2]):
+        np.full(size[:2], k, np.int16).tofile(tmp_path / f"s{k:03d}.raw")
+    before = source_of(header), sitk.GetArrayFromImage(sitk.ReadImage(str(header)))
+    np.full(size[:2], 99, np.int16).tofile(tmp_path / "s003.raw")
+    after = source_of(header), sitk.GetArrayFromImage(sitk.ReadImage(str(header)))
+    assert before[0] != after[0]
+    assert np.unique(np.argwhere(before[1] != after[1])[:, 0]).tolist() == [3]
+
+
+@pytest.mark.parametrize(
+    ("name", "head"),
+    [("a.mhd", "NDims = 3\nElementDataFile = LOCAL\n"), ("a.nrrd", "NRRD0004\ndimension: 3\n\n")],
+)
+def test_values_in_the_file_itself_are_no_names(name: str, head: str, tmp_path: Path) -> None:
+    """Bytes in which any line may stand, too long for a name, or as one of a file beside."""
+    (tmp_path / "other").write_bytes(b"one")
+    values = b"\0\nother\ndata file: other\n" + b"a/" * 9000 + b"\n"
+    (tmp_path / name).write_bytes(head.encode() + values)
+    known = source_of(tmp_path / name)
+    (tmp_path / "other").write_bytes(b"two")
+    assert source_of(tmp_path / name) == known
+    (tmp_path / name).write_bytes(head.replace("LOCAL", "x" * 999).encode() + values)
+    source_of(tmp_path / name)
 
 
 def test_heads_that_are_none_leave_no_stage(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
+from glob import escape, glob
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,12 @@ FORMAT = "bezsoma model 1"
 """The mark in model.json by which a folder is known to be one of ours."""
 PENDING = "pending"
 """What model.json says while the files of a stage take their places."""
+NAMING = {
+    ".mhd": "elementdatafile", ".mha": "elementdatafile", ".nhdr": "datafile", ".nrrd": "datafile",
+}  # fmt: skip
+"""By what word, without its spaces, a header of a format names the files of its values."""
+LONGEST_HEADER = 1_000_000
+"""Bytes of a file in which its header ends."""
 ROOM = 300_000_000
 """Bytes that have to be free before a run starts."""
 
@@ -218,19 +225,47 @@ def hashed(paths: Iterable[Path], *words: str) -> str:
 def source_of(path: Path) -> str:
     """SHA-256 of a picture: of its file, or of all files of its folder by name.
 
-    A .mhd or .nhdr file is only a header; its values lie in files beside it, whatever their names,
-    so all that it names count.
+    A MetaImage or NRRD file may be only a header, whose values lie in files beside it, whatever
+    their names: in one, in one a slice by a pattern or by a list. All that it names count.
     """
     if not path.exists():
         raise InputError(f"no file or folder {str(path)!r}; give a CT: a file, or a DICOM folder")
     if path.is_dir():
         return hashed(sorted(p for p in path.rglob("*") if p.is_file()))
-    if path.suffix.lower() not in (".mhd", ".nhdr"):
+    if path.suffix.lower() not in NAMING:
         return hashed([path])
-    text = path.read_text(encoding="latin-1")
-    words = [re.split("[=:]", line)[-1].strip() for line in text.splitlines()]
-    beside = (path.parent / word for word in words if word and len(word) < 256)
-    return hashed([path, *(file for file in beside if file.is_file())])
+    return hashed([path, *_beside(path)])
+
+
+def _beside(path: Path) -> list[Path]:
+    """The files that a header names."""
+    with path.open("rb") as file:
+        lines = file.read(LONGEST_HEADER).decode("latin-1").split("\n")
+    found: list[Path] = []
+    for number, line in enumerate(lines):
+        key, _, word = re.sub("[=:]", "\n", line, count=1).partition("\n")
+        if "".join(key.split()).lower() == NAMING[path.suffix.lower()]:
+            listed = lines[number + 1 :] if word.split()[:1] == ["LIST"] else []
+            for name in (word, *listed):
+                found += _files(path.parent, name.strip())
+            break  # values may follow
+        if not line.strip() and path.suffix.lower() in (".nrrd", ".nhdr"):
+            break
+    return found
+
+
+def _files(folder: Path, name: str) -> list[Path]:
+    """The file of a name, or those of a pattern such as 's%03d.raw 0 39 1', whatever its range."""
+    if not name:
+        return []
+    place = os.path.join(folder, name)
+    if os.path.isfile(place):  # false, too, for what can be no name
+        return [Path(place)]
+    pattern = re.sub(r"(\s+-?\d+)+$", "", place)
+    parts = re.split(r"%[-+ #0]*\d*[a-zA-Z]", pattern)
+    if len(parts) == 1:
+        return []
+    return sorted(Path(file) for file in glob("*".join(map(escape, parts))) if os.path.isfile(file))
 
 
 def key_of(*parts: object) -> str:
