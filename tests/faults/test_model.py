@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import shutil
 import subprocess
@@ -39,8 +40,9 @@ from bezsoma.imaging import (
 )
 from bezsoma.imaging.meaning import AIR, BONE, MANDIBLE, SOFT
 from bezsoma.model import ModelSettings, building, read_settings, run_model
-from bezsoma.model.folder import RECORD, source_of
+from bezsoma.model.folder import RECORD, ModelFolder, source_of
 from bezsoma.model.lock import locked
+from bezsoma.model.settings import written
 
 
 def refused(words: list[str], call: Callable[..., Any], *given: Any, **named: Any) -> None:
@@ -127,6 +129,12 @@ SETTINGS: Mapping[str, tuple[str, list[str]]] = {
     "a number": ("[model]\nseries = 5", ["series = 5", "a word in quotes"]),
     "not given": ("[model]\nforward = nan", ["forward = nan", "a number"]),
     "no table": ("labels = 3", ["labels is a table"]),
+    "far too long": ("[model]\nforward = " + "9" * 400, ["forward", "more than 64 bits"]),
+    "longer than is read": ("[model]\nforward = " + "9" * 5000, ["not readable TOML"]),
+    "long in hexadecimals": ("[labels]\nbone = 0x" + "f" * 5000, ["bone", "64 bits"]),
+    "a long one of three": ("[labels]\nchin = [0, 1" + "0" * 400 + ", 2]", ["chin", "64 bits"]),
+    "deep": ("[labels]\nchin = " + "[" * 5000 + "]" * 5000, ["nested too deep"]),
+    "less deep": ("[labels]\nchin = " + "[" * 200 + "]" * 200, ["chin", "no setting"]),
 }
 
 
@@ -136,6 +144,14 @@ def test_files_of_settings_are_refused(case: str, tmp_path: Path) -> None:
     (tmp_path / "s.toml").write_text(text)
     refused(["s.toml", *words], read_settings, tmp_path / "s.toml")
     refused(["no file of settings"], read_settings, tmp_path / "other.toml")
+
+
+@pytest.mark.parametrize("word", ['a "b"', "back\\slash", "two\nlines\t\x01\x7f", "hör é", "#="])
+def test_settings_are_read_as_they_were_written(word: str, tmp_path: Path) -> None:
+    settings = replace(COARSE, series=word)
+    for mark in (b"", b"\xef\xbb\xbf"):  # as some editors begin a file
+        (tmp_path / "s.toml").write_bytes(mark + written(settings).encode())
+        assert read_settings(tmp_path / "s.toml") == settings
 
 
 @pytest.fixture(scope="module")
@@ -333,10 +349,34 @@ def test_a_refused_picture_leaves_no_claim_on_a_folder(
         refused(["none that is read"], run_model, ct, place, COARSE, segmentation="/dev/null")
         refused(["slices are missing"], run_model, series, place, COARSE)
     assert not new.exists() and list(own.iterdir()) == []
-    killed = '{"format": "bezsoma model 1", "source": "of another picture", "stages": {}}'
+    with ModelFolder.at(own, "another picture", overwrite=False):
+        killed = (own / RECORD).read_text()
     (own / RECORD).write_text(killed)
     for place in (new, own):
         assert run_model(ct, place, COARSE).kept == ()
+
+
+def test_a_record_that_lost_something_is_refused(
+    ct: Path, tmp_path: Path, fast: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "m"
+    run_model(ct, place, COARSE)
+    before = contents(place)
+    whole = json.loads(before[RECORD])
+    for path in ([], ["stages", "labels"], ["stages", "mesh", "said"]):
+        inner = whole
+        for key in path:
+            inner = inner[key]
+        for key in list(inner):
+            if key == "format":
+                continue
+            kept = inner.pop(key)
+            (place / RECORD).write_text(json.dumps(whole))
+            refused([RECORD, "not as it was written", "--overwrite"], run_model, ct, place, COARSE)
+            inner[key] = kept
+    (place / RECORD).write_text(json.dumps(whole | {"stages": {"labels": 3}}))
+    assert run_model(ct, place, COARSE, overwrite=True).kept == ()
+    assert contents(place) == before
 
 
 def test_skin_that_bone_pierces_is_told() -> None:

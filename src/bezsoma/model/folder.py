@@ -39,6 +39,8 @@ NAMING = {
 """By what word, without its spaces, a header of a format names the files of its values."""
 LONGEST_HEADER = 1_000_000
 """Bytes of a file in which its header ends."""
+SUM = "sum"
+"""What model.json calls the SHA-256 of the rest that it says."""
 ROOM = 300_000_000
 """Bytes that have to be free before a run starts."""
 
@@ -72,7 +74,7 @@ class ModelFolder:
 
     @classmethod
     def _entered(cls, path: Path | str, place: Path, source: str, overwrite: bool) -> ModelFolder:
-        record = _record(place)
+        record = _record(place, overwrite)
         if record is None and place.exists() and any(place.iterdir()):
             raise InputError(
                 f"{str(path)!r} exists and is no model of BezSoma, so nothing in it is touched; "
@@ -197,18 +199,32 @@ class ModelFolder:
         return said
 
     def _save(self) -> None:
-        text = json.dumps(self.record, indent=1) + "\n"
+        text = json.dumps({**self.record, SUM: _sum(self.record)}, indent=1) + "\n"
         write_whole(self.place / RECORD, lambda part: part.write_text(text, encoding="utf-8"))
 
 
-def _record(place: Path) -> dict[str, Any] | None:
-    """What model.json says, if the folder has one that is ours."""
+def _record(place: Path, overwrite: bool) -> dict[str, Any] | None:
+    """What model.json says, if the folder has one that is ours; nothing if it is to be replaced."""
     try:
         record = json.loads((place / RECORD).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return None
-    ours = isinstance(record, dict) and record.get("format") == FORMAT
-    return record if ours and isinstance(record.get("stages"), dict) else None
+    if not (isinstance(record, dict) and record.get("format") == FORMAT):
+        return None
+    if record.pop(SUM, None) == _sum(record):
+        return record
+    if overwrite:
+        return {}
+    raise InputError(
+        f"{str(place / RECORD)!r} is not as it was written: it was changed, or lost something of "
+        "what it said; delete the folder, make the model anew with --overwrite, or choose another "
+        "folder with -o"
+    )
+
+
+def _sum(record: dict[str, Any]) -> str:
+    """Of a record as it will be read: JSON turns every key into a word."""
+    return hashed([], json.dumps(json.loads(json.dumps(record)), sort_keys=True))
 
 
 def hashed(paths: Iterable[Path], *words: str) -> str:

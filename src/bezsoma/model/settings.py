@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -63,12 +64,16 @@ def read_settings(path: Path | str) -> ModelSettings:
     """
     place = Path(path)
     try:
-        tables = tomllib.loads(place.read_text(encoding="utf-8"))
+        tables = tomllib.loads(place.read_text(encoding="utf-8-sig"))  # a mark at its head is none
     except FileNotFoundError:
         raise InputError(
             f"no file of settings {str(path)!r}; give a .toml file, or leave it out"
         ) from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except RecursionError:
+        raise InputError(
+            f"{place.name}: arrays or tables are nested too deep; no setting needs more than one"
+        ) from None
+    except (OSError, ValueError) as error:  # also of bytes, and of numbers too long to be read
         raise InputError(f"{place.name}: this is not readable TOML: {error}") from None
     try:
         return _settings(tables)
@@ -96,6 +101,8 @@ def _made(
         if key not in names:
             raise InputError(f"[{name}] {unknown('key', key, names, 'this table')}")
     types = {f.name: str(f.type) for f in fields(kind)}
+    for key, value in table.items():
+        _check_within(f"[{name}] {key}", value)
     values = {key: _value(value) for key, value in table.items()}
     for key, value in values.items():
         if not (_fits(types[key], value) or (value is None and "None" in types[key])):
@@ -118,6 +125,15 @@ def _fits(type_: str, value: Any) -> bool:
     if form in ("bool", "str", "Literal"):
         return isinstance(value, bool if form == "bool" else str)
     return number and (form == "float" or isinstance(value, int))
+
+
+def _check_within(key: str, value: Any) -> None:
+    """Refuses whole numbers longer than TOML promises, and lists in lists."""
+    for each in value if isinstance(value, list) else [value]:
+        if isinstance(each, int) and not -(2**63) <= each < 2**63:
+            raise InputError(f"{key}: a whole number of more than 64 bits can be no setting")
+        if isinstance(each, list | dict):
+            raise InputError(f"{key}: no setting holds lists or tables in a list")
 
 
 def _value(value: Any) -> Any:
@@ -151,4 +167,13 @@ def _text(value: object) -> str:
         return str(value).lower()
     if value is None:
         return "nan"
-    return f'"{value}"' if isinstance(value, str) else repr(value)
+    return _quoted(value) if isinstance(value, str) else repr(value)
+
+
+def _quoted(word: str) -> str:
+    r"""A basic string of TOML: what JSON escapes, and the one more character that TOML does.
+
+    >>> print(_quoted('a "b" \\ c'))
+    "a \"b\" \\ c"
+    """
+    return json.dumps(word, ensure_ascii=False).replace("\x7f", "\\u007f")
