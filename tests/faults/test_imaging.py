@@ -93,6 +93,11 @@ SERIES: dict[str, tuple[Callable[[], list[dicom.Slice]], list[str]]] = {
     "two series": (two_series, ["several series", "1.2.9: 14 slices", "series="]),
     "colour": (lambda: changed(g0028_0002=3), ["colour"]),
     "no rescale": (lambda: changed(g0028_1052=None), ["rescale", "original"]),
+    "a slope of nothing": (lambda: changed(g0028_1053="0"), ["slope", "(0, -1024)"]),
+    "a slope in words": (lambda: changed(g0028_1053="abc"), ["slope", "abc"]),
+    "a slope downwards": (lambda: changed(g0028_1053="-1"), ["slope", "positive"]),
+    "an endless slope": (lambda: changed(g0028_1053="1e400"), ["slope", "1e400"]),
+    "an intercept in words": (lambda: changed(g0028_1052="none"), ["intercept", "none"]),
     "no position": (lambda: one_changed(2, changes={(0x0020, 0x0032): None}), ["position"]),
     "a broken position": (
         lambda: one_changed(2, changes={(0x0020, 0x0032): "1\\nan\\3"}),
@@ -126,6 +131,38 @@ def one_spaced(spacing: float) -> list[dicom.Slice]:
 def test_a_series_is_refused(case: str, tmp_path: Path, child: Child) -> None:
     slices, words = SERIES[case]
     refused(words, read_volume, dicom.written(tmp_path / "s", slices()), child=child)
+
+
+@pytest.mark.parametrize("number", [0, 6, 13])
+@pytest.mark.parametrize("part", [0, 0.05, 0.25, 0.6, 0.99])
+def test_a_damaged_slice_is_named(number: int, part: float, tmp_path: Path, child: Child) -> None:
+    """At the ends of a series, where no gap tells of it, and amid it, where the gap would."""
+    stack = dicom.stack(dicom.pattern())
+    folder = dicom.written(tmp_path / "s", stack, shuffled=False)
+    path = folder / f"IM{number:04d}"
+    content = path.read_bytes()
+    path.write_bytes(content[: int(part * len(content))])
+    words = ["1 of its 14 files", path.name, "damaged or cut short", "copy the series again"]
+    refused(words, read_volume, folder, child=child)
+    path.unlink()
+    if number != 6:
+        assert read_volume(folder, child=child).shape == (30, 20, 13)
+
+
+def test_files_of_another_kind_are_no_damaged_slices(tmp_path: Path, child: Child) -> None:
+    """A report in DICOM has no picture; a note may be empty."""
+    folder = dicom.written(tmp_path / "s", dicom.stack(dicom.pattern()))
+    report = dicom.stack(dicom.pattern())[0]
+    picture = [tag for tag in report.tags(0) if tag[0] in (0x0028, 0x7FE0)]
+    report.changes = dict.fromkeys(picture)
+    report.changes |= {(0x0008, 0x0016): "1.2.840.10008.5.1.4.1.1.88.11", (0x0008, 0x0060): "SR"}
+    (folder / "SR0001").write_bytes(report.content(99))
+    (folder / "note.txt").touch()
+    assert read_volume(folder, child=child).shape == (30, 20, 14)
+    only = tmp_path / "only"
+    only.mkdir()
+    (only / "IM0000").write_bytes((folder / "IM0000").read_bytes()[:300])
+    refused(["1 of its 1 files", "IM0000", "damaged"], read_volume, only, child=child)
 
 
 def test_eight_bits_are_refused(tmp_path: Path, child: Child) -> None:

@@ -47,8 +47,8 @@ class Series:
         return f"{self.name}: {len(self.headers)} slices of {self.modality or 'no modality'}{about}"
 
 
-def series_in(folder: Path, child: Child) -> list[Series]:
-    """The series of a folder, the largest first."""
+def series_in(folder: Path, child: Child) -> tuple[list[Series], list[Path]]:
+    """The series of a folder, the largest first; and slices too damaged to say of which."""
     paths = sorted(p for p in folder.rglob("*") if p.is_file() and p.name != "DICOMDIR")
     if not paths:
         raise InputError(f"{folder}: the folder is empty; a folder of DICOM files is needed")
@@ -59,6 +59,9 @@ def series_in(folder: Path, child: Child) -> list[Series]:
         if header is not None:
             people.add(header.pop("person"))
             groups.setdefault(header["series"], []).append(header | {"path": str(path)})
+    damaged = [Path(path) for path in answer["damaged"]]
+    if not groups and damaged:
+        raise _unreadable(folder, damaged, len(paths))
     if not groups:
         raise InputError(
             f"{folder}: none of its {len(paths)} files is a DICOM image; a folder of slices is "
@@ -72,12 +75,26 @@ def series_in(folder: Path, child: Child) -> list[Series]:
         Series(name, group[0]["about"], group[0]["modality"], tuple(group))
         for name, group in groups.items()
     ]
-    return sorted(found, key=lambda s: (-len(s.headers), s.name))
+    return sorted(found, key=lambda s: (-len(s.headers), s.name)), damaged
+
+
+def _unreadable(folder: Path, damaged: Sequence[Path], count: int) -> InputError:
+    """A series without some of its slices would lack a part of the head without a word."""
+    names = [str(path.relative_to(folder)) for path in damaged]
+    listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+    return InputError(
+        f"{folder}: {len(damaged)} of its {count} files are damaged or cut short slices of a CT "
+        f"({listed[:300]}), so a part of the head may be missing; copy the series again, or move "
+        "these files out of the folder if they do not matter"
+    )
 
 
 def read_series(folder: Path, child: Child, series: str | None, interpolate: bool) -> Volume:
     """The volume (HU) of one series of a folder; `series` is its UID or what it is called."""
-    chosen = _chosen(folder, series_in(folder, child), series)
+    found, damaged = series_in(folder, child)
+    chosen = _chosen(folder, found, series)
+    if damaged:
+        raise _unreadable(folder, damaged, len(damaged) + sum(len(s.headers) for s in found))
     where = str(folder)
     try:
         headers, notes = _ordered(_images_of(chosen))
@@ -135,11 +152,27 @@ def _check_ct(modality: str, headers: Sequence[Mapping[str, Any]]) -> None:
             "slices without rescale slope and intercept have no Hounsfield units; export the "
             "original slices"
         )
+    for header in headers:
+        if not _rescales(header):
+            raise InputError(
+                f"slice {Path(header['path']).name} has no usable rescale slope and intercept "
+                f"({header['slope'][:30]}, {header['intercept'][:30]}): a positive and a finite "
+                "number make Hounsfield units of its values; export the original slices"
+            )
     if first["frames"] not in ("", "1"):
         raise InputError(
             "it is one file of many frames (enhanced CT), which is not read; convert it to NRRD "
             "with 3D Slicer"
         )
+
+
+def _rescales(header: Mapping[str, Any]) -> bool:
+    """Whether slope and intercept of a slice make Hounsfield units."""
+    try:
+        slope, intercept = float(header["slope"]), float(header["intercept"])
+    except ValueError:
+        return False
+    return bool(np.isfinite(slope) and np.isfinite(intercept) and slope > 0)
 
 
 def _numbers(header: Mapping[str, Any], tag: str, count: int) -> Floats:

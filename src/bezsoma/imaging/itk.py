@@ -12,6 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 import resource
 import sys
 from collections.abc import Callable
@@ -39,6 +40,8 @@ TAGS = {
     "columns": "0028|0011",
     "place": "0018|5100",
 }
+CT = b"1.2.840.10008.5.1.4.1.1.2"
+"""What a file that holds a slice of a CT says of its kind; others of CT go on behind it."""
 IDENTITY = ("0010|0020", "0010|0010", "0010|0030")
 SALT = os.urandom(16)
 
@@ -59,14 +62,35 @@ def header(path: str) -> dict[str, Any]:
 
 
 def headers(request: dict[str, Any]) -> dict[str, Any]:
-    """For every path its tags, or null for a file that is no DICOM image."""
+    """For every path its tags, or null for a file that is no DICOM image; and damaged slices."""
     found: list[dict[str, Any] | None] = []
+    damaged = []
     for path in request["paths"]:
         try:
             found.append(header(path))
         except RuntimeError:
             found.append(None)
-    return {"headers": found}
+            if is_damaged(path):
+                damaged.append(path)
+    return {"headers": found, "damaged": damaged}
+
+
+def is_damaged(path: str) -> bool:
+    """Whether a file that does not read as an image says at its head that it is one of a CT.
+
+    One that begins as DICOM and ends before it says what it holds counts too. So does one that is
+    empty or begins with zeros alone, where its name does not end as that of another kind of file.
+    """
+    with open(path, "rb") as file:
+        head = file.read(4096)
+    if not head.strip(b"\0"):
+        return os.path.splitext(path)[1].lower() in ("", ".dcm", ".ima")
+    if head[128:132] != b"DICM":
+        return False
+    told = re.search(rb"\x02\x00\x02\x00UI(..)([0-9.]+)", head, re.DOTALL)
+    if told is None or len(told[2]) < int.from_bytes(told[1], "little") - 1:
+        return len(head) < 4096
+    return told[2] == CT or told[2].startswith(CT + b".")
 
 
 def slices(request: dict[str, Any]) -> dict[str, Any]:

@@ -90,7 +90,7 @@ def dicom_series(folder: str | os.PathLike[str]) -> list[str]:
     if not place.is_dir():
         raise InputError(f"{folder} is a file; a folder of DICOM slices is needed")
     with Child() as reader:
-        return [str(found) for found in series_in(place, reader)]
+        return [str(found) for found in series_in(place, reader)[0]]
 
 
 def read_segmentation(
