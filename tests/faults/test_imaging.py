@@ -116,6 +116,7 @@ SERIES: dict[str, tuple[Callable[[], list[dicom.Slice]], list[str]]] = {
     ),
     "another spacing": (lambda: one_changed(2, spacing=(3, 2.5)), ["different size", "3\\2.5"]),
     "no air": (lambda: dicom.stack(np.abs(dicom.pattern())), ["no air", "hounsfield="]),
+    "a shear of metres": (lambda: dicom.stack(dicom.pattern(), shear=300), ["3900 mm beside"]),
     "far too fine": (lambda: one_spaced(0.01), ["too thin", "mm"]),
 }
 

@@ -235,10 +235,10 @@ def _volume(
     gaps = np.diff(places @ axes[:, 2])
     step = float(np.median(gaps))
     _check_gaps(gaps, step, interpolate, notes)
-    values = _sheared_back(values, places, axes, (columns, rows), notes)
+    values, start = _sheared_back(values, places, axes, (columns, rows), notes)
     if np.abs(gaps / step - 1).max() > EVEN:
         values = _evened(values, places @ axes[:, 2], step)
-    frame = Frame(np.array([columns, rows, step]), places[0], axes)
+    frame = Frame(np.array([columns, rows, step]), start, axes)
     return Volume(values, frame, tuple(notes))
 
 
@@ -278,17 +278,38 @@ def _check_gaps(gaps: Floats, step: float, interpolate: bool, notes: list[str]) 
 
 def _sheared_back(
     values: Grid, places: Floats, axes: Floats, spacing: tuple[float, float], notes: list[str]
-) -> Grid:
-    """Slices moved within their planes to stand square on each other, as a tilted gantry's not."""
+) -> tuple[Grid, Floats]:
+    """Slices moved within their planes to stand square on each other, as a tilted gantry's not.
+
+    The grid grows by what they move, filled with the least value, so that nothing leaves it; the
+    place (3,) of its first voxel is answered too.
+    """
     offset = (places - places[0]) @ axes[:, :2] / spacing
     if np.abs(offset).max() < 0.1:
-        return values
+        return values, places[0]
+    before = np.ceil(np.maximum(-offset, 0).max(axis=0)).astype(int)
+    after = np.ceil(np.maximum(offset, 0).max(axis=0)).astype(int)
     most = float(np.abs(offset * spacing).max())
-    notes.append(f"slices do not stand square on each other: moved back by up to {most:.4g} mm")
-    return np.stack([
-        ndimage.shift(s, o[::-1], order=1, mode="nearest")
-        for s, o in zip(values, offset, strict=True)
-    ])  # fmt: skip
+    if (before + after > values.shape[:0:-1]).any():
+        raise InputError(
+            f"slices lie up to {most:.4g} mm beside each other, more than they are wide: no tilt "
+            "of a gantry; export the original slices"
+        )
+    notes.append(
+        f"slices do not stand square on each other: moved back by up to {most:.4g} mm, the grid "
+        "widened by as much"
+    )
+    grown = np.full(
+        (len(values), *(values.shape[1:] + (before + after)[::-1])), values.min(), np.float32
+    )
+    for wide, plane, move in zip(grown, values, offset, strict=True):
+        inner = tuple(
+            slice(start, start + count)
+            for start, count in zip(before[::-1], plane.shape, strict=True)
+        )
+        wide[inner] = plane
+        wide[:] = ndimage.shift(wide, move[::-1], order=1, mode="nearest")
+    return grown, places[0] - axes[:, :2] @ (before * spacing)
 
 
 def _evened(values: Grid, along: Floats, step: float) -> Grid:
