@@ -129,14 +129,15 @@ def test_series_are_listed_and_chosen_and_nobody_is_named(tmp_path: Path, child:
     truth = dicom.pattern()
     other = dicom.stack(truth + 50)
     for number, one in enumerate(other):
-        one.changes = {(0x0020, 0x000E): "1.2.3.5", (0x0008, 0x103E): "bone",
+        one.changes = {(0x0020, 0x000E): "1.2.3.5", (0x0008, 0x103E): "bone", (0x0020, 0x0011): 7,
                        (0x0008, 0x0018): f"1.2.7.{number}"}  # fmt: skip
     folder = dicom.written(tmp_path / "a", [*dicom.stack(truth), *other])
     (folder / "notes.txt").write_text("no image")
     assert dicom_series(folder) == ["1.2.3.4: 14 slices of CT (head)",
-                                    "1.2.3.5: 14 slices of CT (bone)"]  # fmt: skip
-    volume = read_volume(folder, series="bone", child=child)
-    assert volume.values[3, 5, 5] == truth[3, 5, 5] + 50
+                                    "1.2.3.5: 14 slices of CT, number 7 (bone)"]  # fmt: skip
+    for words in ("bone", "1.2.3.5", "7"):
+        volume = read_volume(folder, series=words, child=child)
+        assert volume.values[3, 5, 5] == truth[3, 5, 5] + 50
     assert "Doe" not in repr(volume) + str(volume.notes) and "4711" not in repr(volume)
     write_volume(tmp_path / "out.nrrd", volume.values, volume.frame)
     assert b"Doe" not in (tmp_path / "out.nrrd").read_bytes()

@@ -35,7 +35,10 @@ FEWEST = 8
 
 @dataclass(frozen=True)
 class Series:
-    """One series of a folder: its name (a UID), what the scanner called it, files, modality."""
+    """One series of a folder: its name (a UID), what the scanner called it, files, modality.
+
+    What it is called is free text, and left out where a word of the patient stands in it.
+    """
 
     name: str
     about: str
@@ -43,8 +46,16 @@ class Series:
     headers: tuple[Mapping[str, Any], ...]
 
     def __str__(self) -> str:
+        first = self.headers[0]
+        told = [
+            f"{word}{first[key]}{unit}"
+            for key, word, unit in (
+                ("number", "number ", ""), ("thick", "", " mm thick"), ("kernel", "kernel ", "")
+            ) if first[key]
+        ]  # fmt: skip
+        what = f"{len(self.headers)} slices of {self.modality or 'no modality'}"
         about = f" ({self.about})" if self.about else ""
-        return f"{self.name}: {len(self.headers)} slices of {self.modality or 'no modality'}{about}"
+        return f"{self.name}: {', '.join([what, *told])}{about}"
 
 
 def series_in(folder: Path, child: Child) -> tuple[list[Series], list[Path]]:
@@ -90,7 +101,7 @@ def _unreadable(folder: Path, damaged: Sequence[Path], count: int) -> InputError
 
 
 def read_series(folder: Path, child: Child, series: str | None, interpolate: bool) -> Volume:
-    """The volume (HU) of one series of a folder; `series` is its UID or what it is called."""
+    """The volume (HU) of one series of a folder; `series` is its UID, its number, or its name."""
     found, damaged = series_in(folder, child)
     chosen = _chosen(folder, found, series)
     if damaged:
@@ -110,7 +121,7 @@ def read_series(folder: Path, child: Child, series: str | None, interpolate: boo
 def _chosen(folder: Path, found: Sequence[Series], wanted: str | None) -> Series:
     """The one that was asked for, or the only CT with enough slices."""
     if wanted is not None:
-        fits = [s for s in found if wanted in (s.name, s.about)]
+        fits = [s for s in found if wanted and wanted in (s.name, s.headers[0]["number"], s.about)]
         if not fits:
             raise InputError(unknown("series", wanted, [s.name for s in found], str(folder)))
         if len(fits) == 1:
@@ -120,8 +131,9 @@ def _chosen(folder: Path, found: Sequence[Series], wanted: str | None) -> Series
     if len(volumes) > 1:
         listed = "; ".join(map(str, volumes))
         raise InputError(
-            f"{folder}: it holds several series: {listed}. Say which one with series=, by its "
-            "number or by what it is called"
+            f"{folder}: it holds several series: {listed}. Say which one, by what stands before "
+            'the colon, by its number or by what it is called in brackets: series = "..." in '
+            "[model] of the settings, series= in Python"
         )
     return volumes[0]
 

@@ -39,10 +39,16 @@ TAGS = {
     "rows": "0028|0010",
     "columns": "0028|0011",
     "place": "0018|5100",
+    "kernel": "0018|1210",
+    "thick": "0018|0050",
 }
 CT = b"1.2.840.10008.5.1.4.1.1.2"
 """What a file that holds a slice of a CT says of its kind; others of CT go on behind it."""
 IDENTITY = ("0010|0020", "0010|0010", "0010|0030")
+NAMES = (*IDENTITY, "0010|1000", "0010|1001", "0010|1005", "0010|1060")
+"""Words of a patient: also other numbers and names, that at birth, the mother's."""
+TOLD = ("about", "kernel", "number", "thick")
+"""Words of a series that may be shown, unless they hold one of a patient."""
 SALT = os.urandom(16)
 
 
@@ -58,7 +64,16 @@ def header(path: str) -> dict[str, Any]:
 
     person = "\0".join(map(tag, IDENTITY)).encode("utf-8", "replace")
     found: dict[str, Any] = {name: tag(key) for name, key in TAGS.items()}
+    names = " ".join(map(tag, NAMES))
+    found |= {name: "" for name in TOLD if is_personal(found[name], names)}
     return found | {"person": hashlib.sha256(SALT + person).hexdigest()[:16]}
+
+
+def is_personal(text: str, names: str) -> bool:
+    """Whether a word of a patient's names stands in a text: one of three letters anywhere."""
+    words, text = re.findall(r"[^\W_]+", names.casefold()), text.casefold()
+    apart = re.findall(r"[^\W_]+", text)
+    return any(word in (text if len(word) >= 3 else apart) for word in words)
 
 
 def headers(request: dict[str, Any]) -> dict[str, Any]:
