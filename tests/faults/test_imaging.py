@@ -132,7 +132,7 @@ SERIES: dict[str, tuple[Callable[[], list[dicom.Slice]], list[str]]] = {
         lambda: one_changed(2, directions=(1, 0, 0, 0, 0, -1)),
         ["1 of 14 slices", "another direction"],
     ),
-    "a missing slice": (without_one, ["missing", "after slice 5", "8 mm", "interpolate=True"]),
+    "a missing slice": (without_one, ["missing", "after slice 5", "8 mm", "interpolate = true"]),
     "two pictures of a place": (far_double, ["1 slices lie where another", "acquisitions"]),
     "too few": (lambda: dicom.stack(dicom.pattern(5)), ["5 slices", "at least 8"]),
     "another size": (

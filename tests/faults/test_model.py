@@ -127,6 +127,9 @@ SETTINGS: Mapping[str, tuple[str, list[str]]] = {
     "yes": ('[labels]\nhalfway = "no"', ["halfway", "true or false"]),
     "half a degree": ("[model]\ndegree = 3.5", ["degree = 3.5", "a whole number"]),
     "a number": ("[model]\nseries = 5", ["series = 5", "a word in quotes"]),
+    "no slope": ("[model]\nhounsfield = [0, 3]", ["hounsfield=(0, 3)", "positive slope"]),
+    "half a rescale": ("[model]\nhounsfield = [1.0]", ["hounsfield", "two numbers"]),
+    "a gap": ("[model]\ninterpolate = 1", ["interpolate", "true or false"]),
     "not given": ("[model]\nforward = nan", ["forward = nan", "a number"]),
     "no table": ("labels = 3", ["labels is a table"]),
     "far too long": ("[model]\nforward = " + "9" * 400, ["forward", "more than 64 bits"]),
@@ -377,6 +380,45 @@ def test_a_record_that_lost_something_is_refused(
     (place / RECORD).write_text(json.dumps(whole | {"stages": {"labels": 3}}))
     assert run_model(ct, place, COARSE, overwrite=True).kept == ()
     assert contents(place) == before
+
+
+def test_what_a_refusal_asks_for_can_be_said_in_settings(
+    tmp_path: Path, fast: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A gap, two series and grey values, by the words in the messages themselves."""
+    volume = head_ct((3, 3, 3), joint=5, noise=0).volume
+    slices = [
+        dicom.Slice(plane + 1024, volume.frame.points(np.array([0, 0, k])), spacing=(3, 3))
+        for k, plane in enumerate(volume.values)
+    ]
+    other = dicom.stack(dicom.pattern())
+    for number, one in enumerate(other):
+        one.changes = {(0x0020, 0x000E): "1.2.9", (0x0008, 0x0018): f"1.2.8.{number}"}
+    folder = dicom.written(tmp_path / "s", [*slices[:20], *slices[21:], *other])
+    grey = tmp_path / "grey.nrrd"
+    values = np.rint((volume.values.clip(-1024, 3056) + 1024) / 16).astype(np.uint8)
+    write_volume(grey, values, volume.frame)
+    coarse = written(COARSE)
+
+    def made(picture: Path, *lines: str) -> int:
+        words = [line.split("=")[0] for line in lines]
+        rest = [line for line in coarse.splitlines() if line.split("=")[0] not in words]
+        (tmp_path / "s.toml").write_text("\n".join([*rest, *lines]))
+        place, settings = str(tmp_path / "m"), str(tmp_path / "s.toml")
+        more = ["-q", "--overwrite", "--settings", settings]
+        return cli.main(["model", str(picture), "-o", place, *more])
+
+    one, gap = 'series = "1.2.3.4"', "interpolate = true"
+    assert made(folder) == 2 and 'series = "..." in [model]' in said(capsys)
+    assert made(folder, one) == 2 and f"{gap} in [model]" in said(capsys)
+    assert made(folder, one, gap) == 0
+    assert made(grey) == 2 and "hounsfield = [slope, intercept] in [model]" in said(capsys)
+    assert made(grey, "hounsfield = [16, -1024]") == 0
+    assert read_settings(tmp_path / "m" / "model.toml").hounsfield == (16, -1024)
+
+
+def said(capsys: pytest.CaptureFixture[str]) -> str:
+    return " ".join(capsys.readouterr().err.split())
 
 
 def test_skin_that_bone_pierces_is_told() -> None:

@@ -278,7 +278,8 @@ def _check_gaps(gaps: Floats, step: float, interpolate: bool, notes: list[str]) 
         raise InputError(
             f"slices are missing: after slice {first + 1} the next one follows at "
             f"{gaps[first]:.4g} mm, elsewhere at {step:.4g} mm ({int(wide.sum())} such gaps); copy "
-            "the series again, or say interpolate=True to have them filled between neighbours"
+            "the series again, or have them filled between neighbours: interpolate = true in "
+            "[model] of the settings, interpolate=True in Python"
         )
     if wide.any():
         notes.append(f"{int(wide.sum())} gaps of up to {gaps.max():.4g} mm were interpolated")

@@ -32,6 +32,11 @@ LONGEST = 2500.0
 """mm; a picture longer than a tall person is not in mm."""
 SHORTEST = 20.0
 """mm; a picture thinner than this shows no head, or is in other units."""
+STATED = (
+    "hounsfield = [slope, intercept] in [model] of the settings, hounsfield=(slope, intercept) in "
+    "Python"
+)
+"""Where a person says what stored values are."""
 AIR, LEAST, MOST = -500, -1024, 30_000
 """HU: what air is below; values below LEAST are padding; beyond MOST they are none."""
 
@@ -245,7 +250,7 @@ def _scalars(
     if values.dtype.itemsize == 1 and hounsfield is None:
         raise InputError(
             f"{path}: voxels of 8 bits are grey values, not Hounsfield units; export 16 bits, or "
-            "say hounsfield=(slope, intercept) if you know them"
+            f"say slope and intercept if you know them: {STATED}"
         )
     return values
 
@@ -281,12 +286,12 @@ def _in_hounsfield(volume: Volume, given: tuple[float, float] | None) -> Volume:
         raise InputError(
             f"values from {low:g} to {high:g}: no air (-1000 HU) is in view, so they are hardly "
             "Hounsfield units (an MR, or a CT without its intercept); export the CT again, or say "
-            "hounsfield=(slope, intercept)"
+            f"slope and intercept: {STATED}"
         )
     if high > MOST or high < AIR:
         raise InputError(
             f"values from {low:g} to {high:g} are no Hounsfield units of a head (air -1000, bone "
-            "some 300 to 2000); export the CT again, or say hounsfield=(slope, intercept)"
+            f"some 300 to 2000); export the CT again, or say slope and intercept: {STATED}"
         )
     if low < LEAST:
         notes.append(f"padding below {LEAST} HU (down to {low:g}) is taken as air")

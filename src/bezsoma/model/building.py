@@ -120,7 +120,8 @@ def _made(
     """The model, stage by stage, in a folder that no other run uses."""
     stated = settings.stated()
     drawn = None if given is None else source_of(given)
-    first = key_of(source, stated["labels"], settings.series, drawn)
+    told = settings.series, settings.interpolate, settings.hounsfield
+    first = key_of(source, stated["labels"], told, drawn)
     second = key_of(first, stated["domain"], stated["sizes"], settings.tets)
     third = key_of(second, stated["model"])
     stages: tuple[tuple[str, str, Callable[[Path], dict[str, Any]]], ...] = (
@@ -153,7 +154,12 @@ def _labels(
     at: Path, ct: Path, given: Path | None, settings: ModelSettings, progress: Progress
 ) -> dict[str, Any]:
     progress("labels", None, f"reading {ct.name}")
-    volume = read_volume(ct, series=settings.series)
+    volume = read_volume(
+        ct,
+        series=settings.series,
+        interpolate=settings.interpolate,
+        hounsfield=settings.hounsfield,
+    )
     masks = None if given is None else read_segmentation(given)
     progress("labels", None, "finding skin, bone and mandible")
     found = labels(volume, settings.labels, masks)

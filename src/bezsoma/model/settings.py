@@ -40,7 +40,11 @@ class ModelSettings:
     degree: int = 3
     """Of the displacement in the case."""
     series: str | None = None
-    """Which series of a DICOM folder."""
+    """Which series of a DICOM folder: its UID, its number, or what it is called."""
+    interpolate: bool = False
+    """Whether slices that a series lacks are filled in between their neighbours."""
+    hounsfield: tuple[float, float] | None = None
+    """Slope and intercept by which stored values that are none become HU."""
 
     def __post_init__(self) -> None:
         if self.tets is not None and not 1000 <= self.tets <= 3_000_000:
@@ -49,12 +53,18 @@ class ModelSettings:
             raise InputError(f"forward={self.forward}: at most 50 mm")
         if not 1 <= self.degree <= 10:
             raise InputError(f"degree={self.degree}: 1 to 10")
+        if self.hounsfield is not None and not (
+            np.isfinite(self.hounsfield).all() and self.hounsfield[0] > 0
+        ):
+            raise InputError(
+                f"hounsfield={self.hounsfield}: a positive slope and an intercept are needed"
+            )
 
     def stated(self) -> dict[str, dict[str, object]]:
         """Every table with all its names and values."""
-        rest = {"tets": self.tets, "forward": self.forward, "degree": self.degree}
         tables = {name: getattr(self, name).stated() for name in KINDS}
-        return {**tables, "model": {**rest, "series": self.series}}
+        own = [each.name for each in fields(self) if each.name not in KINDS]
+        return {**tables, "model": {name: getattr(self, name) for name in own}}
 
 
 def read_settings(path: Path | str) -> ModelSettings:
