@@ -430,6 +430,28 @@ def test_skin_that_bone_pierces_is_told() -> None:
     assert note.startswith("LOOK") and "at 2 vertices" in note and "more tets" in note
 
 
+def test_a_poor_mesh_is_told() -> None:
+    good = {"least_dihedral": 8.1, "tets": 900, "off_voxels": {"skin": 0.4, "skull": 0.5}}
+    assert building._poor(good, 1000) == building._poor(good, None) == []
+    poor = {"least_dihedral": 7.94, "tets": 790, "off_voxels": {"skin": 0.4, "skull": 0.51}}
+    angle, surface, count = building._poor(poor, 1000)
+    assert angle.startswith("LOOK") and "7.9 degrees, below 8" in angle
+    assert surface.startswith("LOOK") and "skull lies 0.51 voxels" in surface
+    assert count.startswith("LOOK") and "790 tets" in count and "1000 were asked" in count
+    assert len(building._poor(poor, None)) == 2 and len(building._poor(poor, 790)) == 2
+
+
+def test_a_poor_mesh_is_told_in_the_model(
+    ct: Path, tmp_path: Path, fast: pytest.MonkeyPatch
+) -> None:
+    """Its notes and README.txt have the warning, here of a limit that no mesh keeps."""
+    fast.setattr(building, "OFF", 0.01)
+    made = run_model(ct, tmp_path / "m", COARSE)
+    off = [name for name, value in made.report["off_voxels"].items() if value > 0.01]
+    assert off and all(f"the surface {name} lies" in str(made.notes) for name in off)
+    assert "voxels from that of the labels" in (tmp_path / "m" / "README.txt").read_text()
+
+
 def test_a_model_in_the_folder_of_its_ct_is_refused(tmp_path: Path) -> None:
     refused(["folder of the CT", "-o"], run_model, tmp_path, tmp_path / "model")
     assert not list(tmp_path.iterdir())

@@ -36,6 +36,8 @@ from bezsoma.view.plates import plates_picture
 Progress = Callable[[str, float | None, str], None]
 """Called with a stage, how much of it is done (0 to 1, None where unknown) and a note."""
 LABELS, MESH, LANDMARKS, CASE = "labels.seg.nrrd", "mesh.npz", "landmarks.mrk.json", "case.toml"
+SHARPEST, OFF, FAR = 8.0, 0.5, 1.25
+"""Degrees, voxels, and times the tets asked for, beyond which a mesh is warned of."""
 FILES: Mapping[str, tuple[str, ...]] = {
     "labels": (LABELS, "labels.png"),
     "mesh": (MESH, LANDMARKS),
@@ -188,7 +190,7 @@ def _mesh(at: Path, folder: Path, settings: ModelSettings, progress: Progress) -
             )
     write_mesh(at / MESH, made.mesh)
     write_landmarks(at / LANDMARKS, face_points(found))
-    notes = [*part.notes, *_pierced(made.mesh)]
+    notes = [*part.notes, *_pierced(made.mesh), *_poor(made.report, settings.tets)]
     return {"notes": notes, "report": dict(made.report), "sizes": sizes.stated()}
 
 
@@ -202,6 +204,29 @@ def _pierced(mesh: TetMesh) -> list[str]:
         f"LOOK: bone pierces the skin at {count} vertices, since the tissue between is thinner "
         "than the cells; take more tets, or a smaller domain"
     ]
+
+
+def _poor(report: Mapping[str, Any], wanted: int | None) -> list[str]:
+    """Warnings of a mesh that is less than a model promises: its angles, surfaces, size."""
+    notes = []
+    if report["least_dihedral"] < SHARPEST:
+        notes.append(
+            f"LOOK: a dihedral angle of {report['least_dihedral']:.1f} degrees, below "
+            f"{SHARPEST:g}, slows the solver and spoils stress there; take more tets, or move the "
+            "domain's planes"
+        )
+    for name, off in report["off_voxels"].items():
+        if off > OFF:
+            notes.append(
+                f"LOOK: the surface {name} lies {off:.2f} voxels from that of the labels in the "
+                f"mean, more than {OFF:g}: cells are too large for its form; take more tets"
+            )
+    if wanted is not None and not 1 / FAR <= report["tets"] / wanted <= FAR:
+        notes.append(
+            f"LOOK: {report['tets']} tets were made where {wanted} were asked for: no sizes were "
+            "found that give as many; ask for another number, or set [sizes] and tets = nan"
+        )
+    return notes
 
 
 def _case(
