@@ -142,12 +142,18 @@ SERIES: dict[str, tuple[Callable[[], list[dicom.Slice]], list[str]]] = {
     "another spacing": (lambda: one_changed(2, spacing=(3, 2.5)), ["different size", "3\\2.5"]),
     "no air": (lambda: dicom.stack(np.abs(dicom.pattern())), ["no air", "hounsfield="]),
     "a shear of metres": (lambda: dicom.stack(dicom.pattern(), shear=300), ["3900 mm beside"]),
+    "no spacing": (lambda: one_spaced(0), ["all three must be positive"]),
+    "next to none, sheared": (lambda: sheared_and_spaced(1e-9), ["mm beside each other"]),
     "far too fine": (lambda: one_spaced(0.01), ["too thin", "mm"]),
 }
 
 
-def one_spaced(spacing: float) -> list[dicom.Slice]:
-    slices = dicom.stack(dicom.pattern())
+def sheared_and_spaced(spacing: float) -> list[dicom.Slice]:
+    return one_spaced(spacing, shear=1.0)
+
+
+def one_spaced(spacing: float, shear: float = 0.0) -> list[dicom.Slice]:
+    slices = dicom.stack(dicom.pattern(), shear=shear)
     for one in slices:
         one.spacing = (spacing, spacing)
     return slices

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -246,12 +246,12 @@ def _volume(
     rows, columns = _numbers(headers[0], "spacing", 2)
     gaps = np.diff(places @ axes[:, 2])
     step = float(np.median(gaps))
+    square = Frame(np.array([columns, rows, step]), places[0], axes)
     _check_gaps(gaps, step, interpolate, notes)
     values, start = _sheared_back(values, places, axes, (columns, rows), notes)
     if np.abs(gaps / step - 1).max() > EVEN:
         values = _evened(values, places @ axes[:, 2], step)
-    frame = Frame(np.array([columns, rows, step]), start, axes)
-    return Volume(values, frame, tuple(notes))
+    return Volume(values, replace(square, origin=start), tuple(notes))
 
 
 def _without_doubles(
@@ -297,13 +297,13 @@ def _sheared_back(
     The grid grows by what they move, filled with the least value, so that nothing leaves it; the
     place (3,) of its first voxel is answered too.
     """
-    offset = (places - places[0]) @ axes[:, :2] / spacing
+    with np.errstate(over="ignore"):  # of pixels of next to no size
+        offset = (places - places[0]) @ axes[:, :2] / spacing
     if np.abs(offset).max() < 0.1:
         return values, places[0]
-    before = np.ceil(np.maximum(-offset, 0).max(axis=0)).astype(int)
-    after = np.ceil(np.maximum(offset, 0).max(axis=0)).astype(int)
+    low, high = (np.ceil(np.maximum(sign * offset, 0).max(axis=0)) for sign in (-1, 1))
     most = float(np.abs(offset * spacing).max())
-    if (before + after > values.shape[:0:-1]).any():
+    if not (low + high <= values.shape[:0:-1]).all():
         raise InputError(
             f"slices lie up to {most:.4g} mm beside each other, more than they are wide: no tilt "
             "of a gantry; export the original slices"
@@ -312,6 +312,7 @@ def _sheared_back(
         f"slices do not stand square on each other: moved back by up to {most:.4g} mm, the grid "
         "widened by as much"
     )
+    before, after = low.astype(int), high.astype(int)
     grown = np.full(
         (len(values), *(values.shape[1:] + (before + after)[::-1])), values.min(), np.float32
     )
