@@ -355,8 +355,13 @@ def test_a_refused_picture_leaves_no_claim_on_a_folder(
     with ModelFolder.at(own, "another picture", overwrite=False):
         killed = (own / RECORD).read_text()
     (own / RECORD).write_text(killed)
+    new.mkdir()
+    (new / ".model-0123abcd.json").write_text("{")  # the record of a run killed at its start
     for place in (new, own):
         assert run_model(ct, place, COARSE).kept == ()
+    before = contents(new)
+    refused(["slices are missing"], run_model, series, new, COARSE, overwrite=True)
+    assert set(run_model(ct, new, COARSE).kept) == STAGES and contents(new) == before
 
 
 def test_a_record_that_lost_something_is_refused(

@@ -50,6 +50,7 @@ class ModelFolder:
     """A folder for one model, and what its record says. `overwrite`: stages may be made anew."""
 
     place: Path
+    source: str
     overwrite: bool
     record: dict[str, Any] = field(default_factory=dict)
 
@@ -75,7 +76,8 @@ class ModelFolder:
     @classmethod
     def _entered(cls, path: Path | str, place: Path, source: str, overwrite: bool) -> ModelFolder:
         record = _record(place, overwrite)
-        if record is None and place.exists() and any(place.iterdir()):
+        parts = list(place.glob(f".{Path(RECORD).stem}-*.json"))  # of a run killed at its start
+        if record is None and place.exists() and any(p not in parts for p in place.iterdir()):
             raise InputError(
                 f"{str(path)!r} exists and is no model of BezSoma, so nothing in it is touched; "
                 "choose another folder with -o"
@@ -87,14 +89,17 @@ class ModelFolder:
                 f"{str(path)!r} holds the model of another picture; choose another folder with -o, "
                 "or replace it with --overwrite"
             )
-        folder = cls(place, overwrite, record or {"format": FORMAT, "source": source, "stages": {}})
+        folder = cls(
+            place, source, overwrite, record or {"format": FORMAT, "source": source, "stages": {}}
+        )
         folder._check_room()
         with written(place):
             place.mkdir(exist_ok=True)
+            for part in parts:
+                part.unlink(missing_ok=True)
             if PENDING in folder.record:
                 folder._settle()
             folder._check_untouched()
-            folder.record["source"] = source
             folder._save()
         return folder
 
@@ -174,7 +179,7 @@ class ModelFolder:
         before = self.record["stages"].get(stage)
         stale = before is None or before["key"] != known["key"]
         pending = {"stage": stage, "folder": partial, "known": known, "gone": list(later) * stale}
-        self.record = {**self.record, PENDING: pending}
+        self.record = {**self.record, "source": self.source, PENDING: pending}
         self._save()
 
     def _settle(self) -> None:
