@@ -146,8 +146,8 @@ PICTURES = (
     Mutant(
         "slices of a tilted gantry moved the wrong way",
         f"{IMAGING}/dicom.py",
-        "ndimage.shift(s, o[::-1]",
-        "ndimage.shift(s, -o[::-1]",
+        "ndimage.shift(wide, move[::-1]",
+        "ndimage.shift(wide, -move[::-1]",
         READING,
     ),
     Mutant(
