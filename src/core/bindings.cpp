@@ -371,7 +371,7 @@ public:
     Multigrid(MatrixFree &k, Walk &walk, const std::optional<Corners> &corners,
               In<double, -1, 3> points, In<bool, -1, 3> held, In<bool, -1, 3> held_vertices)
         : k_(k), inverse_(walk, corners, {points, held, held_vertices, k.form().controls()},
-                          &k.form().chunks(), k.kernels(), k.team()) {}
+                          &k.form().chunks(), k.kernels(), k.team(), k.turn()) {}
 
     auto solve(In<double, -1, 3> f, Vectors x, double reference, double rtol, int most,
                const std::function<void(int, double)> &report) {
@@ -408,7 +408,7 @@ public:
            In<double, -1> weight, In<double, -1, -1> levels)
         : form_(form),
           inverse_(walk, corners, {points, held, held_vertices, form.form().controls()},
-                   &form.form().chunks(), form.kernels(), form.team()) {
+                   &form.form().chunks(), form.kernels(), form.team(), form.turn()) {
         require(static_cast<std::int64_t>(weight.size()) == form.form().regions() &&
                     levels.shape(1) == static_cast<std::size_t>(form.form().pressures()),
                 "weight and levels must fit the regions and the pressure's controls");

@@ -11,7 +11,8 @@
 namespace bezsoma {
 
 Inverse::Inverse(Walk &walk, const std::optional<Corners> &corners, const Supported &supported,
-                 const Chunks *chunks, const Kernels &kernels, Team &team) {
+                 const Chunks *chunks, const Kernels &kernels, Team &team,
+                 std::recursive_mutex &turn) {
     const auto &[points, fixed, held_vertices, controls] = supported;
     const ElasticTets tets = walk.tets();
     const auto vertices = static_cast<std::int64_t>(points.shape(0));
@@ -29,6 +30,7 @@ Inverse::Inverse(Walk &walk, const std::optional<Corners> &corners, const Suppor
                                                 held_vertices.data() + held_vertices.size());
     const std::int32_t *rows = corners ? corners->data() : tets.first;
     nb::gil_scoped_release released;
+    const Turn ours(turn);
     if (tets.degree > 1) {
         std::optional<Chunks> own;
         if (!chunks)
@@ -59,7 +61,7 @@ public:
         const auto controls = static_cast<std::int64_t>(held.shape(0));
         inverse_ = std::make_unique<Inverse>(walk, corners,
                                              Supported{points, held, held_vertices, controls},
-                                             nullptr, kernels_of(instructions), team_);
+                                             nullptr, kernels_of(instructions), team_, turn_);
     }
 
     /// z = B r.

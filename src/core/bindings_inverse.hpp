@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -35,9 +36,9 @@ struct Inverse {
 
     /// corners (tets, 4) are the rows of each tet's vertices. The walk is used up: its numbering
     /// has done its work halfway, and is much of the memory. `chunks` are those of the operator
-    /// beside which it stands; null where it stands alone.
+    /// beside which it stands; null where it stands alone. `turn` is that of the team.
     Inverse(Walk &walk, const std::optional<Corners> &corners, const Supported &supported,
-            const Chunks *chunks, const Kernels &kernels, Team &team);
+            const Chunks *chunks, const Kernels &kernels, Team &team, std::recursive_mutex &turn);
 
     Search search(Team &team) {
         return {blocks.get(), [this](const float *r, float *z) { aggregation->apply(r, z); }, team};

@@ -181,14 +181,21 @@ from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.element import lame_constants
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.mesh import ControlNet, block
+from bezsoma.solvers.multigrid import preconditioner
 net = ControlNet(block(cells=8), 3)
+held = np.zeros((net.count, 3), bool)
+held[net.of_place("bottom")] = True
 operator = MatrixFree(net, np.array([[0.6, 0.4]]), 2)
 expected, wrong = operator @ net.points, []
 def apply():
     for _ in range(100):
         if not (operator @ net.points == expected).all():
             wrong.append(1)
-threads = [threading.Thread(target=apply) for _ in range(3)]
+def build():
+    for _ in range(10):
+        preconditioner(operator, held)
+threading.excepthook = wrong.append
+threads = [threading.Thread(target=each) for each in (apply, apply, apply, build)]
 for thread in threads: thread.start()
 for thread in threads: thread.join()
 print("wrong", len(wrong))
@@ -196,13 +203,16 @@ print("wrong", len(wrong))
 
 
 def test_one_operator_in_two_threads() -> None:
-    """They take turns; without a lock they would take each other's jobs, and hang or be wrong."""
+    """They take turns, also while a preconditioner is made beside it with the same team.
+
+    Without a lock they would take each other's jobs, and hang or be wrong.
+    """
     with script(SHARED) as child:
         try:
             out, err = child.communicate(timeout=200)
         except subprocess.TimeoutExpired:
             child.kill()
-            pytest.fail("two threads that apply one operator wait for each other for ever")
+            pytest.fail("threads that share one operator wait for each other for ever")
     assert (out, child.returncode) == ("wrong 0\n", 0), err
 
 
