@@ -39,6 +39,18 @@ TEXTS = {
     "an index": ("    y += a[i] * b;", "a[i]", "a[0]", "    y += a[ (E ? (0) : (i))] * b;"),
     "a factor": ("x = p * (q + r);", "(q + r)", "(q - r)", "x = p * ( (E ? (q - r) : (q + r)));"),
     "a statement": ("\n  run();\n", "run();", ";", "\n  if (E) { ; } else { run(); }\n"),
+    "the end of a statement": (
+        "y = a +\n  b * c;",
+        "b * c;",
+        "b;",
+        "y = (E ? (a +\n  b) : (a +\n  b * c));",
+    ),
+    "a statement below a remark": (
+        "f(); // why\n  g();",
+        "g();",
+        ";",
+        "f(); // why\n  if (E) { ; } else { g(); }",
+    ),
     "what is declared": (
         "\n  const int n = m;",
         "n = m;",

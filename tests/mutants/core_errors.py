@@ -226,7 +226,7 @@ CORE_ERRORS = (
         "a batch's last lanes, which have no tet, that pull once more",
         f"{CORE}/elastic_operator.cpp",
         "i < chunk.tets ? tets.region(tet) : tets.regions;",
-        "tets.region(tet);",
+        "i < chunk.tets ? tets.region(tet) : tets.region(tet);",
         MATRIX_FREE,
     ),
     Mutant(

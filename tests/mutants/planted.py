@@ -142,10 +142,12 @@ def enclosed(text: str, at: int) -> int:
 
 def are_statements(text: str, at: int, mutant: Mutant) -> bool:
     """Whether both texts are statements as a whole, so that a condition can choose."""
-    starts_line = text[:at].rsplit("\n", 1)[-1].strip() == ""
+    above, _, before = text[:at].rpartition("\n")
+    last = above.rpartition("\n")[2].partition("//")[0].strip()
+    begins = not before.strip() and (not last or last.endswith((";", "{", "}", ")")))
     declares = mutant.old.lstrip().startswith(("const ", "{"))
     return (
-        starts_line
+        begins
         and not declares
         and all(
             part.rstrip().endswith((";", "}")) and unmatched(part) == (0, 0)
