@@ -249,6 +249,7 @@ CORE_ERRORS = (
         "reaching[next][v] = static_cast<float>(reach.of[n - a[v]]);",
         "reaching[next][v] = static_cast<float>(reach.of[n - a[0]]);",
         MULTIGRID,
+        compiled=True,
     ),
     Mutant(
         "moments of an edge with the wrong one of its vertices' functions",
