@@ -430,8 +430,8 @@ CORE_ERRORS = (
     Mutant(
         "a reciprocal cube root with one step too few",
         f"{CORE}/laws/lane_functions.hpp",
-        "cube_steps = 3;",
-        "cube_steps = 2;",
+        "step < I::cube_steps; ++step)",
+        "step < I::cube_steps - 1; ++step)",
         LAWS,
     ),
     Mutant(
