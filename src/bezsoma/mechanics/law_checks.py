@@ -18,15 +18,15 @@ APART, FLOOR = 1e-3, 1e-4
 rest: differences of a law with a kink are right to some `STEP`, wrong factors are not so near."""
 
 
-def _strains(volume: bool) -> Floats:
-    """An orthonormal basis of the symmetric H, of those without a change of volume unless asked."""
+def strains() -> Floats:
+    """An orthonormal basis (6, 3, 3) of the symmetric H: the change of volume, five of shape."""
     basis = np.zeros((6, 3, 3))
     basis[0] = np.eye(3) / np.sqrt(3)
     basis[1] = np.diag([1, -1, 0]) / np.sqrt(2)
     basis[2] = np.diag([1, 1, -2]) / np.sqrt(6)
     for row, (k, l) in enumerate(((0, 1), (1, 2), (2, 0)), start=3):
         basis[row, k, l] = basis[row, l, k] = 1 / np.sqrt(2)
-    return basis if volume else basis[1:]
+    return basis
 
 
 def stiffness_at_rest(slope: Callable[[Floats, Floats], Floats], volume: bool) -> float:
@@ -38,13 +38,13 @@ def stiffness_at_rest(slope: Callable[[Floats, Floats], Floats], volume: bool) -
     >>> round(stiffness_at_rest(lambda H, dH: 2 * dH, volume=True), 12)
     2.0
     """
-    strains = _strains(volume)
-    C = np.einsum("akl,bkl->ab", strains, slope(np.zeros_like(strains), strains))
+    basis = strains() if volume else strains()[1:]
+    C = np.einsum("akl,bkl->ab", basis, slope(np.zeros_like(basis), basis))
     moduli, directions = np.linalg.eigh((C + C.T) / 2)
     largest = float(np.abs(moduli).max())
     if moduli[0] > LEAST * largest:
         return largest
-    worst = np.einsum("a,akl->kl", directions[:, 0], strains)
+    worst = np.einsum("a,akl->kl", directions[:, 0], basis)
     raise InputError(
         f"FunctionLaw does not resist the small strain {_told(worst)} at rest: its modulus there "
         f"is {moduli[0]:.3g} MPa, the largest of all {largest:.3g}, so that a body of it gives way "

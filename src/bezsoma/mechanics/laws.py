@@ -16,7 +16,7 @@ import numpy as np
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError
 from bezsoma.mechanics.compiled import bulk
-from bezsoma.mechanics.law_checks import refuse_other_energy, stiffness_at_rest
+from bezsoma.mechanics.law_checks import refuse_other_energy, stiffness_at_rest, strains
 from bezsoma.mechanics.materials import Material
 
 Stress = Callable[[Floats], Floats]
@@ -349,17 +349,9 @@ def nearest_isotropic(law: Law, H: Floats) -> tuple[Floats, Floats]:
     >>> [x.round(12).tolist() for x in nearest_isotropic(LinearElastic(2.5, 0.25), np.eye(3)[None])]
     [[1.666666666667], [1.0]]
     """
-    whole, swelling = np.zeros(len(H)), np.zeros(len(H))
-    for k in range(3):
-        for l in range(k, 3):
-            dH = np.zeros_like(H)
-            dH[:, k, l] += 0.5
-            dH[:, l, k] += 0.5
-            dP = law.derivative(H, dH)
-            whole += (dP[:, k, l] + dP[:, l, k]) / (1 if k != l else 2)
-            if k == l:
-                swelling += np.trace(dP, axis1=1, axis2=2)
-    return swelling / 9, (3 * whole - swelling) / 30
+    basis = [np.broadcast_to(strain, H.shape) for strain in strains()]
+    moduli = [np.einsum("tkl,tkl->t", dH, law.derivative(H, dH)) for dH in basis]
+    return moduli[0] / 3, np.sum(moduli[1:], axis=0) / 10
 
 
 def at_rest(law: Law) -> tuple[float, float]:
