@@ -17,6 +17,16 @@ APART, FLOOR = 1e-3, 1e-4
 """How far stress and the slope of energy may be apart, of the stress there and of the modulus at
 rest: differences of a law with a kink are right to some `STEP`, wrong factors are not so near."""
 
+_STRAINED = np.array([[0.03, -0.02, 0.01], [0.04, 0.05, -0.03], [0.02, 0.01, -0.06]])
+_WAYS = np.array(
+    [
+        [[0.5, 0.0, 0.0], [0.0, 0.7, 0.0], [0.0, 0.0, -0.4]],
+        [[0.0, 0.8, 0.0], [0.3, 0.0, 0.5], [0.0, 0.5, 0.0]],
+        [[0.2, 0.1, -0.4], [0.3, -0.6, 0.2], [0.5, 0.1, 0.3]],
+    ]
+)
+"""A state, and directions in which energy and stress are looked at."""
+
 
 def strains() -> Floats:
     """An orthonormal basis (6, 3, 3) of the symmetric H: the change of volume, five of shape."""
@@ -64,14 +74,11 @@ def refuse_other_energy(
         ...
     bezsoma.errors.InputError: the stress of FunctionLaw is not the derivative of its energy: ...
     """
-    states, ways = np.zeros((4, 1, 3, 3)), np.zeros((1, 3, 3, 3))
+    states = np.zeros((4, 1, 3, 3))
     states[1, 0] = np.diag([0.1, -0.04, -0.02])
     states[2, 0, 0, 1], states[2, 0, 1, 0] = 0.08, 0.02
-    states[3, 0] = [[0.03, -0.02, 0.01], [0.04, 0.05, -0.03], [0.02, 0.01, -0.06]]
-    ways[0, 0] = np.diag([0.5, 0.7, -0.4])
-    ways[0, 1] = [[0.0, 0.8, 0.0], [0.3, 0.0, 0.5], [0.0, 0.5, 0.0]]
-    ways[0, 2] = [[0.2, 0.1, -0.4], [0.3, -0.6, 0.2], [0.5, 0.1, 0.3]]
-    H, dH = np.broadcast_arrays(states, ways)
+    states[3, 0] = _STRAINED
+    H, dH = np.broadcast_arrays(states, _WAYS)
     with np.errstate(all="ignore"):
         P = stress(H)
         found = (energy(H + STEP * dH) - energy(H - STEP * dH)) / (2 * STEP)
@@ -86,6 +93,37 @@ def refuse_other_energy(
             f"{_told(H[s, w])} the energy changes by {found[s, w]:.4g} N/mm2 along "
             f"{_told(dH[s, w])}, and the stress does {wanted[s, w]:.4g}; mend one of them, or "
             "leave energy= out, and the tangent is not taken for symmetric"
+        )
+
+
+def refuse_other_slope(
+    stress: Callable[[Floats], Floats], slope: Callable[[Floats, Floats], Floats], modulus: float
+) -> None:
+    """Refuses a derivative that is not the one of the stress, in two states and three directions.
+
+    Both are strained all round and a little: nothing has a kink there, and what may give way has
+    not yet. A complex step knows nothing of an absolute value:
+
+    >>> law = lambda H: H * (1 + abs(H))
+    >>> refuse_other_slope(law, lambda H, dH: law(H + 1e-30j * dH).imag / 1e-30, modulus=1.0)
+    Traceback (most recent call last):
+        ...
+    bezsoma.errors.InputError: the derivative of FunctionLaw is not that of its stress: ...
+    """
+    H, dH = np.broadcast_arrays(np.array([0.5, -0.5])[:, None, None, None] * _STRAINED, _WAYS)
+    with np.errstate(all="ignore"):
+        found = slope(H, dH)
+        wanted = (stress(H + STEP * dH) - stress(H - STEP * dH)) / (2 * STEP)
+        apart = np.abs(found - wanted).max(axis=(-2, -1))
+        bound = APART * np.abs(wanted).max(axis=(-2, -1)) + FLOOR * modulus
+    wrong = np.argwhere(np.isfinite(apart) & (apart > bound))
+    if len(wrong):
+        s, w = wrong[0]
+        raise InputError(
+            f"the derivative of FunctionLaw is not that of its stress: at H = {_told(H[s, w])} "
+            f"along {_told(dH[s, w])} it is {_told(found[s, w])} MPa, and the stress changes by "
+            f"{_told(wanted[s, w])}; mend one of them (a complex step is right without abs, max "
+            "and eigenvalues only), or take derivative='differences'"
         )
 
 

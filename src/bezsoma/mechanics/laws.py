@@ -16,7 +16,12 @@ import numpy as np
 from bezsoma.arrays import Floats
 from bezsoma.errors import InputError
 from bezsoma.mechanics.compiled import bulk
-from bezsoma.mechanics.law_checks import refuse_other_energy, stiffness_at_rest, strains
+from bezsoma.mechanics.law_checks import (
+    refuse_other_energy,
+    refuse_other_slope,
+    stiffness_at_rest,
+    strains,
+)
 from bezsoma.mechanics.materials import Material
 
 Stress = Callable[[Floats], Floats]
@@ -80,7 +85,7 @@ class FunctionLaw:
     `derivative(H, dH)` is exact where you give it. Without it the complex step is taken,
     Im P(H + i h dH) / h, exact to rounding if the function is made of + - * /, powers, exp, log
     and `np.linalg.inv` or `det` (W. Squire and G. Trapp, SIAM Rev. 40, 1998,
-    doi:10.1137/S003614459631241X), but not of abs, eigenvalues or max;
+    doi:10.1137/S003614459631241X), but not of abs, eigenvalues or max, which is refused;
     derivative="differences" takes central differences instead, right to some nine digits, with
     which Newton's last steps are not quadratic. `energy(H)`, if given, says that the stress is its
     derivative, so the tangent is symmetric; that is looked at in four states. At rest the stress
@@ -121,10 +126,12 @@ class FunctionLaw:
                 f"derivative={derivative!r} of FunctionLaw is not known; give a function of "
                 "(H, dH), 'complex step' or 'differences'"
             )
+        if not isinstance(finite, bool):
+            raise InputError(f"finite={finite!r} of FunctionLaw: it must be True or False")
         object.__setattr__(self, "function", stress)
         object.__setattr__(self, "slope", derivative)
         object.__setattr__(self, "stored", energy)
-        object.__setattr__(self, "finite", bool(finite))
+        object.__setattr__(self, "finite", finite)
         object.__setattr__(self, "kappa", None if kappa is None else bulk(kappa, "FunctionLaw"))
         object.__setattr__(self, "linear", False)
         _answers(self)
@@ -315,7 +322,7 @@ class Secant:
 def _answers(law: FunctionLaw) -> None:
     """Refuses a function that does not answer with stress at rest, or cannot be differentiated.
 
-    Also one that does not resist strain there, and an energy that is another law's.
+    Also one that does not resist strain there, and a derivative or an energy that is another's.
     """
     rest = np.zeros((2, 3, 3))
     law.shape_stress(rest)  # not with that of the volume: kappa may be infinite
@@ -335,6 +342,7 @@ def _answers(law: FunctionLaw) -> None:
             "function that works with complex numbers; give derivative=... or 'differences'"
         )
     modulus = stiffness_at_rest(law.shape_slope, volume=law.kappa is None)
+    refuse_other_slope(law.shape_stress, law.shape_slope, modulus)
     if law.stored is not None:
         refuse_other_energy(law.shape_stress, law.shape_energy, modulus)
 
