@@ -145,6 +145,15 @@ def test_turned_body_is_not_strained() -> None:
     assert len({each.fraction for each in solution.path}) > 1
 
 
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+def test_body_turned_a_whole_turn_is_where_it_was(solver: str) -> None:
+    """Forces, ways and their work are all rounding there: nothing to measure the work by."""
+    turn = bz.Moved("bottom", axis=(1, 0, 1), angle=2 * np.pi, about=(5, 5, 5))
+    found = bz.solve(bz.Body(bz.block(cells=2), 2, bz.NeoHooke(1.0, 0.3), [turn]), solver=solver)
+    assert found.path[-1].step == 1 and found.iterations <= 5
+    assert np.abs(found.displacement.controls).max() < 1e-14
+
+
 def test_far_carried_body_converges() -> None:
     """All forces are rounding there, so that nothing may be measured by them alone."""
     body = bz.Body(

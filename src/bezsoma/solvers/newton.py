@@ -198,6 +198,8 @@ class _Step:
     rule: Rule
     record: Record
     floor: tuple[float, ...] = ()
+    idle: float = 0.0
+    """What work is measured by where none is done: the least force over the way of the supports."""
     refused: str = ""
     """Why the last state that could not be was refused."""
     events: list[str] = field(default_factory=list)
@@ -214,6 +216,7 @@ class _Step:
         """What is out of balance when the supports have moved and nothing else."""
         b = self.free(balance.r - tangent.product(jump))
         self.floor = tuple(FLOOR * extent(b[part]) for part in self.system.parts)
+        self.idle = self.floor[0] * extent(jump)
         return b
 
     def merit(self, r: Floats) -> float:
@@ -379,7 +382,7 @@ def _forcing(step: _Step, b: Floats, balance: Balance, before: float) -> float:
 
 def _energy(step: _Step, balance: Balance, dx: Floats) -> float:
     product = abs(float(np.einsum("i,i->", step.free(balance.r), dx)))
-    return product / max(balance.work, np.finfo(float).tiny) if product else 0.0
+    return product / max(balance.work, step.idle, np.finfo(float).tiny) if product else 0.0
 
 
 def _searched(
