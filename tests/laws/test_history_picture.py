@@ -40,3 +40,8 @@ def test_every_iteration_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_without_iterations_nothing_is_drawn() -> None:
     with pytest.raises(bz.InputError, match="no iterations to draw"):
         bz.history_picture(None, ())
+
+
+def test_numbers_alone_are_refused() -> None:
+    with pytest.raises(bz.InputError, match=r"it draws `path` of a Solution"):
+        bz.history_picture(None, [1.0, 1e-5])  # type: ignore[list-item]

@@ -19,6 +19,8 @@ HOLD = "Hold (Fixed, Moved, Prescribed)"
 """The advice on rigid motions that are left."""
 KEYS = {"incompressible=True": "incompressible = true", "unlocked(body)": "split_held_tets = true"}
 """Advice that is one key at the head of the file."""
+ITERATION = re.compile(r"method='secant'.*ake (method=)?'newton'", re.DOTALL)
+"""The advice on an iteration, whose key is another word in a case."""
 
 
 @contextmanager
@@ -39,7 +41,11 @@ in the case file: [[support]] type = "fixed" on = "<place>" (each key on a line 
 
 
 def as_written(message: str) -> str:
-    """How what a message advises is written in a case file; nothing where it advises nothing."""
+    """How what a message advises is written in a case file; nothing where it advises nothing.
+
+    >>> as_written("method='secant' is for a displacement alone; take 'newton'")
+    '; in the case file: iteration = "newton" in [solver]'
+    """
     tables = ""
     if found := JOIN.search(message):
         a, b = found["moved"], found["over"]
@@ -50,6 +56,8 @@ def as_written(message: str) -> str:
         )
     elif HOLD in message:
         tables = '[[support]] type = "fixed" on = "<place>"'
+    elif ITERATION.search(message):
+        return '; in the case file: iteration = "newton" in [solver]'
     if tables:
         return f"; in the case file: {tables} (each key on a line of its own)"
     keys = [key for advice, key in KEYS.items() if advice in message]

@@ -35,9 +35,10 @@ class Stiffening:
     - "energy": s^2 = eps : C_1 : eps, so that W = E/(2A) (exp(A s^2) - 1) is stored;
     - "deviatoric": W = kappa/2 tr^2 + (G/A) (exp(A eps':eps') - 1): volume is not stiffened.
 
-    The first two have no energy (their tangents are not symmetric unless nu = 0); the last two,
-    which are not in the paper, have. shears="engineering" is eq. 24 to the letter, gamma_ij off
-    the diagonal: *not* the same in every frame, for the first two measures only.
+    The first two have no energy, and their tangents are not symmetric ("frobenius" at nu = 0, where
+    it is "energy", apart); the last two, which are not in the paper, have. shears="engineering" is
+    eq. 24 to the letter, gamma_ij off the diagonal: *not* the same in every frame, for the first
+    two measures only.
 
     Small strain: for large turns take a law at finite strain.
 

@@ -18,6 +18,8 @@ SHORTEST = 2.0**-10
 DOUBTED = 2.0**-3
 """A step shorter than this is given up if the law has lost its ellipticity and the tangent no
 longer gives a correction."""
+MOST = 10_000
+"""More load steps than anyone waits for; as many fractions are kept."""
 FEW = 6
 """A step that took no more iterations than this lets the next one be twice as long."""
 
@@ -47,10 +49,10 @@ def steps_checked(steps: Any) -> tuple[float, ...] | None:
     if isinstance(steps, str) and steps == "auto":
         return None
     if isinstance(steps, int | np.integer) and not isinstance(steps, bool):
-        if steps < 1:
+        if not 1 <= steps <= MOST:
             raise InputError(
-                f"steps = {steps}: a load is put on in one step or more; steps='auto' finds how "
-                "many"
+                f"steps = {steps}: a load is put on in one step or more, up to {MOST}; "
+                "steps='auto' finds how many"
             )
         return tuple((i + 1) / int(steps) for i in range(int(steps)))
     fractions = _fractions(steps)
@@ -63,10 +65,9 @@ def steps_checked(steps: Any) -> tuple[float, ...] | None:
 
 
 def _fractions(steps: Any) -> tuple[float, ...]:
-    try:
-        return () if isinstance(steps, str) else tuple(float(each) for each in steps)
-    except (TypeError, ValueError):
-        return ()
+    given = () if isinstance(steps, str) or not hasattr(steps, "__iter__") else tuple(steps)
+    good = all(isinstance(t, int | float | np.number) and not isinstance(t, bool) for t in given)
+    return tuple(map(float, given)) if good else ()
 
 
 def _pairs(fractions: Sequence[float]) -> zip[tuple[float, float]]:

@@ -68,21 +68,29 @@ class Loading:
 
     def __post_init__(self) -> None:
         steps_checked(self.steps)
-        if self.method not in METHODS:
+        if self.method not in tuple(METHODS):
             raise InputError(unknown("method", self.method, METHODS, "solve()"))
         exactness_checked(self.exactness, "solve()")
 
     def exactness_for(self, degree: int) -> int:
         """The exactness of the quadrature of laws: as given, or 2 n + 2.
 
-        At degree 1 strains are the same throughout a tet: one point is exact for any law.
+        At degree 1 strains are the same throughout a tet: one point is exact for any law. Less
+        than 2 n - 2 is refused.
 
         >>> Loading().exactness_for(1), Loading().exactness_for(3), Loading(exactness=9).exactness
         (0, 8, 9)
         """
-        if self.exactness is not None:
-            return self.exactness
-        return 2 * degree + 2 if degree > 1 else 0
+        if self.exactness is None:
+            return 2 * degree + 2 if degree > 1 else 0
+        if self.exactness < 2 * degree - 2:
+            raise InputError(
+                f"exactness={self.exactness} of solve() at degree {degree}: points so few do not "
+                "feel every strain, and the body gives way between them; it must be at least "
+                f"{2 * degree - 2}, which is exact for the linear law, and is {2 * degree + 2} "
+                "where it is not given"
+            )
+        return self.exactness
 
 
 def is_linear(body: Body) -> bool:

@@ -88,8 +88,9 @@ def solve(
             equilibrium is found, and longer again where it is found soon.
         method: for a body that is not linear, "newton", "modified" (the tangent at the start of
             each step is kept) or "secant" (the paper's eq. 51, for the stiffening laws).
-        exactness: up to which degree the quadrature of laws that are not linear is exact; 2 n + 2
-            where not given, and one point at degree 1, where strains are constant in a tet.
+        exactness: up to which degree the quadrature of laws that are not linear is exact, at least
+            2 n - 2; 2 n + 2 where not given, and one point at degree 1, where strains are constant
+            in a tet.
         start: an earlier Solution, or Results, of about the same body on any mesh and of any
             degree: iterations begin there and are fewer; when they end does not depend on it. A
             load is first put on at once from there, and in steps from rest if that fails. A direct

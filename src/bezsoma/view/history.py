@@ -59,8 +59,14 @@ def history_picture(
     """
     if not len(history):
         raise InputError(
-            "there are no iterations to draw: a linear body is solved at once, and its path is "
-            "empty; give the path of a body with a law or a pressure that is not linear"
+            "there are no iterations to draw: a linear body, or one that nothing loads, is solved "
+            "at once, and its path is empty; give the path of a body with a law or a pressure that "
+            "is not linear"
+        )
+    if not all(hasattr(each, "residual") and hasattr(each, "energy") for each in history):
+        raise InputError(
+            f"history_picture() was given {history!r:.60}; it draws `path` of a Solution or of a "
+            "NotConverged, which has the energy and the fraction of the load beside the residual"
         )
     curves = [
         Curve("residual", np.array([each.residual for each in history]), "#1f4e79"),
