@@ -191,12 +191,15 @@ def test_ogden_where_stretches_coincide(gap: float) -> None:
 
 
 def test_exponential_and_logarithm_to_the_last_digits() -> None:
-    """Through laws of one entry: exp over its whole range, ln J from 1e-3 to 1e3."""
-    s = np.linspace(1e-3, 11.8, 4001)
+    """Through laws of one entry: exp over its whole range, ln J from 1e-3 to 1e3.
+
+    5 s^2 is exact for these s: what is seen is the exponential, not its argument's rounding.
+    """
+    s = np.arange(1, 11.8 * 256) / 256
     H = np.zeros((len(s), 3, 3))
     H[:, 0, 1] = 2 * s
     tau = _core.Law("stiffening_deviatoric", [1.0, 0.5, 2.5]).stress(H)[:, 0, 1]
-    assert np.abs(tau / (s * np.exp(5 * s**2)) - 1).max() < 1e-13 * 700
+    assert np.abs(tau / (s * np.exp(5 * s**2)) - 1).max() < 1e-15
     H = np.zeros((4000, 3, 3))
     H[:, 0, 0] = x = np.geomspace(1e-3, 1e3, 4000) - 1
     P = _core.Law("neo_hooke", [1.0, 0.0]).stress(H)[:, 0, 0]

@@ -85,6 +85,20 @@ def test_against_a_plain_assembly(degree: int, fours: bool, instructions: str) -
     assert not tangent.symmetric
 
 
+def test_the_order_of_the_points_is_of_no_matter() -> None:
+    """Those that come in fours are found wherever they stand, with their own weights."""
+    net, laws = ControlNet(regions(), 3), tuple(law(name) for name in SEVERAL)
+    points, weights = bernstein.simplex(8, 3)
+    order = np.random.default_rng(5).permutation(len(points))
+    sorted_, shuffled = (
+        PointwiseFree(net, laws, points[each], weights[each]) for each in (slice(None), order)
+    )
+    u, du = moved(net), np.cos(9 * net.points)
+    assert len(set(weights)) > 2
+    assert apart(shuffled.forces(u), sorted_.forces(u)) < ROUNDING
+    assert apart(shuffled.tangent(u).apply(du), sorted_.tangent(u).apply(du)) < ROUNDING
+
+
 def test_a_state_beyond_float32_is_taken_in_float64() -> None:
     """exp(200) is no number there: there is no rough product then."""
     net, rule = ControlNet(block(), 2), bernstein.simplex(6, 3)
