@@ -193,11 +193,11 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
     ),
     "a probe named like something else": (
         ('name = "middle"', 'name = "energy"'),
-        ["probe.[0].name: 'energy' means something else"],
+        ["probe.[0].name: 'energy' means a quantity of the whole body; take another name"],
     ),
     "two probes of one name": (
         ("[[expect]]", '[[probe]]\nname = "middle"\npoint = [0, 0, 0]\n\n[[expect]]'),
-        ["probe.[1].name: 'middle' names a probe above"],
+        ["probe.[1].name: 'middle' names a probe above; give each a name of its own"],
     ),
     "an expectation without a number": (
         ("between = [0.04, 0.06]", ""),

@@ -155,6 +155,33 @@ def test_the_command_leaves_a_page(tmp_path: Path, capsys: pytest.CaptureFixture
     assert {path.suffix for path in folder.iterdir()} == {".md", ".csv", ".png"}
     assert cli.main(["experiment", "figure_5", "--output", str(folder)]) == 2
     assert "--overwrite" in capsys.readouterr().err
+    assert cli.main(["experiment", "figure_5", "--output", str(folder), "--overwrite"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [
+        ("a file", "is a file, not a folder"),
+        ("below a file", "is a file, not a folder"),
+        ("somebody's notes", "['README.md', 'notes.txt'], which no experiment wrote"),
+    ],
+)
+def test_a_place_that_is_not_its_own_is_left_alone_before_any_work(
+    what: str,
+    said: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(experiment("figure_5"), "measured", lambda quick: pytest.fail("worked"))
+    (tmp_path / "notes.txt").write_text("mine")
+    (tmp_path / "README.md").write_text("mine too")
+    folder = {"a file": "notes.txt", "below a file": "notes.txt/five"}.get(what, ".")
+    command = ["experiment", "figure_5", "--overwrite", "--output", str(tmp_path / folder)]
+    assert cli.main(command) == 2
+    heard = capsys.readouterr().err
+    assert said in heard and "name another" in heard
+    assert (tmp_path / "README.md").read_text() == "mine too"
 
 
 def test_the_command_lists_what_there_is(capsys: pytest.CaptureFixture[str]) -> None:

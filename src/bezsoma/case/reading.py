@@ -95,8 +95,10 @@ def _repeated(probes: list[Probe]) -> list[Fault]:
     found, seen = [], set()
     for number, probe in enumerate(probes):
         if probe.name in seen:
-            found.append(Fault(("probe", number, "name"), f"{probe.name!r} names a probe above"))
+            why = f"{probe.name!r} names a probe above; give each a name of its own"
+            found.append(Fault(("probe", number, "name"), why))
         if probe.name in QUANTITIES:
-            found.append(Fault(("probe", number, "name"), f"{probe.name!r} means something else"))
+            why = f"{probe.name!r} means a quantity of the whole body; take another name"
+            found.append(Fault(("probe", number, "name"), why))
         seen.add(probe.name)
     return found

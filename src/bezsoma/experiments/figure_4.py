@@ -132,9 +132,9 @@ def told(tables: Tables) -> Report:
         f"The same for any degree; a cubic tet has {cubic.controls} controls, {cubic.on_a_face} of "
         "them on each face, none inside. The polynomials sum to one and are nowhere negative, so "
         f"a patch stays within the hull of its controls. Largest values: {heights}.",
-        "They do not; but note what the drawing shows and the word for it hid: of the cubic net "
-        "only the four corners lie on the patch. A control is not a value at a point, so data "
-        "that is given as values has to be converted.",
+        "They do not; but the paper calls controls vertices, and of the cubic net only the four "
+        "corners lie on the patch, as the drawing shows. A control is not a value at a point, so "
+        "data that is given as values has to be converted.",
         tables,
         {
             "nets": Picture(patches(), "Bezier tets of degree 1, 2 and 3 with their control nets."),

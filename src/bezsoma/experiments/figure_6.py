@@ -185,9 +185,12 @@ def blocks() -> dict[str, Picture]:
         found = solved("points", CELLS, degree)
         image = bz.picture(
             None, found.body.mesh, displacement=found.displacement, magnified=0.5,
-            wires=True, size=(620, 620), title=f"degree {degree}, 0.5 N",
+            wires=True, size=(620, 620), title=f"degree {degree}, 1 N",
         )  # fmt: skip
-        about = f"Corners held, 0.5 N at the middle of the top, degree {degree}."
+        about = (
+            f"Corners held, 1 N at the middle of the top, degree {degree}; drawn half as large, "
+            "which is what 0.5 N do."
+        )
         pictures[f"degree_{degree}"] = Picture(image, about)
     return pictures
 

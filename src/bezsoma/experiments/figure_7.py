@@ -107,7 +107,7 @@ def locking(nu: float) -> list[Locked]:
 
 
 def pictures() -> dict[str, Picture]:
-    """Displacement and pressure of both, as the paper coloured them: red is most."""
+    """Displacement and pressure of both, coloured: yellow is most, where the paper has red."""
     shown = {}
     for nu, name in {COMPRESSIBLE: "compressible", INCOMPRESSIBLE: "incompressible"}.items():
         found = solved("points", nu)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -10,6 +11,7 @@ from typing import Protocol, cast
 
 from bezsoma.errors import InputError, unknown
 from bezsoma.experiments.report import Report, Tables
+from bezsoma.results.folder import written as made
 from bezsoma.view.written import written
 
 EXPERIMENTS = MappingProxyType(
@@ -27,6 +29,8 @@ EXPERIMENTS = MappingProxyType(
     }
 )
 """Name -> what it shows."""
+MARK = b"`bezsoma experiment "
+"""Stands in every page of an experiment."""
 
 
 class Experiment(Protocol):
@@ -60,15 +64,40 @@ def run_experiment(
     A quick run leaves no page and no pictures, which would speak of rows that it has not.
     """
     chosen, target = experiment(name), Path(folder)
-    if target.exists() and (not target.is_dir() or (any(target.iterdir()) and not overwrite)):
-        raise InputError(
-            f"{str(target)!r} is there already; say --overwrite, or name another folder with -o"
-        )
+    refuse_occupied(target, overwrite)
     tables = chosen.measured(quick)
     files = {f"{file}.csv": table.as_csv().encode() for file, table in tables.items()}
     if not quick:
         report = chosen.told(tables)
         files |= {f"{file}.png": each.content for file, each in report.pictures.items()}
         files["README.md"] = report.page(name).encode()
-    target.mkdir(parents=True, exist_ok=True)
-    return [written(target / file, content, overwrite=True) for file, content in files.items()]
+    with made(target):
+        target.mkdir(parents=True, exist_ok=True)
+        return [written(target / file, content, overwrite=True) for file, content in files.items()]
+
+
+def refuse_occupied(folder: Path, overwrite: bool) -> None:
+    """Refuse a place before the work: a file, a place in one, or what no experiment wrote."""
+    stands = next(each for each in (folder.absolute(), *folder.absolute().parents) if each.exists())
+    if not stands.is_dir():
+        raise InputError(f"{str(stands)!r} is a file, not a folder; name another one with -o")
+    if not os.access(stands, os.W_OK):
+        raise InputError(f"you may not write to {str(stands)!r}; name another folder with -o")
+    there = sorted(folder.iterdir()) if folder.is_dir() else []
+    if there and not overwrite:
+        raise InputError(
+            f"{str(folder)!r} is there already; say --overwrite, or name another folder with -o"
+        )
+    theirs = [each.name for each in there if not of_an_experiment(each)]
+    if theirs:
+        raise InputError(
+            f"{str(folder)!r} holds {theirs[:3]}, which no experiment wrote, so nothing in it is "
+            "touched; name another folder with -o"
+        )
+
+
+def of_an_experiment(file: Path) -> bool:
+    """Whether a file is one that experiments write: numbers, a picture, or a page that says so."""
+    if file.name == "README.md":
+        return MARK in file.read_bytes()
+    return file.suffix in {".csv", ".png"} and file.is_file()

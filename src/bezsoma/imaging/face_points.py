@@ -36,7 +36,10 @@ def face_points(labels: Labels) -> dict[str, Floats]:
     """
     jaw = np.argwhere(labels.mask(MANDIBLE))[:, ::-1]
     if not len(jaw):
-        raise InputError("the labels have no mandible, from which landmarks are looked for")
+        raise InputError(
+            "the labels have no mandible, from which landmarks are looked for; make them with "
+            "mandible=True, or give a segmentation that has one"
+        )
     bone = labels.frame.points(jaw)
     low, high = bone.min(axis=0), bone.max(axis=0)
     middle = (low[0] + high[0]) / 2

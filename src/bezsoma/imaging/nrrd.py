@@ -49,8 +49,8 @@ def write_segmentation(
 def _header(values: Grid, frame: Frame, words: dict[str, str]) -> bytes:
     if values.dtype.name not in TYPES or values.ndim != 3:
         raise InputError(
-            f"values of type {values.dtype} in {values.ndim} dimensions; three of {list(TYPES)} "
-            "can be written"
+            f"values of type {values.dtype} in {values.ndim} dimensions cannot be written; give "
+            f"three dimensions, of a type among {list(TYPES)}"
         )
 
     def vector(numbers: Grid) -> str:

@@ -90,7 +90,7 @@ def positive(value: Any, what: str, unit: str, why: str) -> float:
     """
     found = number(value, what)
     if not found > 0:
-        raise InputError(f"{what} = {found:g} {unit}: it must be positive, {why}")
+        raise InputError(f"{what} = {found:g} {unit}".rstrip() + f": it must be positive, {why}")
     return found
 
 
@@ -98,7 +98,9 @@ def not_negative(value: Any, what: str, unit: str, why: str) -> float:
     """A number that is zero or above."""
     found = number(value, what)
     if not found >= 0:
-        raise InputError(f"{what} = {found:g} {unit}: it must not be negative, {why}")
+        raise InputError(
+            f"{what} = {found:g} {unit}".rstrip() + f": it must not be negative, {why}"
+        )
     return found
 
 

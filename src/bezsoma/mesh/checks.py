@@ -67,19 +67,19 @@ def index_rows(given: npt.ArrayLike, width: int, count: int, what: str, of: str)
     >>> index_rows([[2, 0, 1]], 3, 5, "facet", "point")
     array([[0, 1, 2]])
     """
-    array = _array(given, f"{what}s")
+    array = _array(given, _plural(what))
     if array.size == 0:
         return np.zeros((0, width), np.int64)
     if array.ndim != 2 or array.shape[1] != width:
         raise MeshError(
-            f"{what}s have the shape {array.shape}; (n, {width}) is needed: "
+            f"{_plural(what)} have the shape {array.shape}; (n, {width}) is needed: "
             f"a row of {width} {of} numbers for each {what}"
         )
-    rows = index_array(array, count, f"{what}s", of)
+    rows = index_array(array, count, _plural(what), of)
     if _core.sort_rows(rows) >= 0:
         twice = np.flatnonzero((rows[:, 1:] == rows[:, :-1]).any(axis=1))
         raise MeshError(
-            f"{_many(twice, what)} {listed(twice)}: {what} {twice[0]} is "
+            f"{_many(twice, what)} {listed(twice)}: number {twice[0]} is "
             f"{array[twice[0]].tolist()} and has the same {of} twice; remove it"
         )
     return rows
@@ -101,8 +101,8 @@ def index_array(given: npt.ArrayLike, count: int, what: str, of: str) -> Ints:
         value = array[outside][0]
         one = " (numbers start at 0, not at 1)" if value == count else ""
         raise MeshError(
-            f"{what} name {of} {value} (in row {listed(rows)}), but there are {count} {of}s, "
-            f"numbered 0 to {count - 1}{one}"
+            f"{what} name {of} {value} (in row {listed(rows)}), but there are {count} "
+            f"{_plural(of)}, numbered 0 to {count - 1}{one}"
         )
     return np.array(array, dtype=np.int64, order="C")
 
@@ -224,8 +224,8 @@ def one_namespace(**kinds: Mapping[str, object]) -> None:
         for name in places:
             if place_name(name, kind) in seen:
                 raise MeshError(
-                    f"{name!r} names a {seen[name]} place and a {kind} place; surfaces, edges "
-                    "and vertices share their names: rename one"
+                    f"{name!r} is the name of both a {seen[name]} and a {kind} place; surfaces, "
+                    "edges and vertices share their names: rename one"
                 )
             seen[name] = kind
 
@@ -277,7 +277,17 @@ def _coincident(points: Floats, vertices: Ints) -> str:
 
 
 def _many(bad: Ints, what: str) -> str:
-    return what if len(bad) == 1 else f"{len(bad)} {what}s:"
+    return what if len(bad) == 1 else f"{len(bad)} {_plural(what)}:"
+
+
+def _plural(noun: str) -> str:
+    """Many of it: the first word bears the ending.
+
+    >>> _plural("vertex"), _plural("facet of surface 'skin'")
+    ('vertices', "facets of surface 'skin'")
+    """
+    first, space, rest = noun.partition(" ")
+    return ("vertices" if first == "vertex" else f"{first}s") + space + rest
 
 
 def _others(bad: Ints) -> str:

@@ -30,7 +30,7 @@ def sampled(function: Function | Floats, points: Floats) -> Floats:
         values = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(
-            f"{'the function gave' if callable(function) else 'there stands'} a "
+            f"{'the function gave' if callable(function) else 'as values was given'} a "
             f"{type(given).__name__} that is no array of numbers; {len(points)} values are needed, "
             "one for each point, or a function that gives them at points (p, 3) in mm"
         ) from None

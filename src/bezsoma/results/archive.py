@@ -117,7 +117,9 @@ def _summary(folder: Path) -> dict[str, Any]:
             "`bezsoma run` wrote"
         ) from None
     except (OSError, ValueError) as error:
-        raise InputError(f"{str(folder / SUMMARY)!r} is damaged: {error}") from None
+        raise InputError(
+            f"{str(folder / SUMMARY)!r} is damaged ({error}); run the case again"
+        ) from None
     given = summary.get("format") if isinstance(summary, dict) else None
     if given != FORMAT:
         raise InputError(
