@@ -224,8 +224,8 @@ def one_namespace(**kinds: Mapping[str, object]) -> None:
         for name in places:
             if place_name(name, kind) in seen:
                 raise MeshError(
-                    f"{name!r} is the name of both a {seen[name]} and a {kind} place; surfaces, "
-                    "edges and vertices share their names: rename one"
+                    f"{name!r} is the name of two places ({seen[name]}, {kind}); surfaces, edges "
+                    "and vertices share their names: rename one"
                 )
             seen[name] = kind
 
