@@ -95,6 +95,16 @@ def test_it_does_what_the_matrix_does(degree: int, instructions: str) -> None:
 
 
 @pytest.mark.parametrize("instructions", SETS)
+@pytest.mark.parametrize("degree", DEGREES)
+def test_its_energy_is_half_the_work_of_its_forces(degree: int, instructions: str) -> None:
+    """On so many tets that no lane can stand for another."""
+    net = ControlNet(materials(block(cells=(2, 2, 1), irregular=0.3, seed=3)), degree)
+    K, u = matrix_of(net), vectors(net)[..., 0]
+    work = float((u * (K @ u)).sum())
+    assert abs(MatrixFree(net, LAME, 2, instructions).energy(u) * 2 / work - 1) < ROUNDING
+
+
+@pytest.mark.parametrize("instructions", SETS)
 @pytest.mark.parametrize("name", MESHES)
 def test_any_mesh(name: str, instructions: str) -> None:
     mesh = materials(MESHES[name]())
