@@ -257,6 +257,10 @@ LAW = (
             "H[1][k] * H[1][l]",
         ),
         ("F S with H transposed", "H[k][1] * s[of[1][l]]", "H[1][k] * s[of[1][l]]"),
+    ),
+    *errors_in(
+        f"{CORE}/laws/motion.hpp",
+        POINTWISE,
         (
             "the place of the greatest J for the least",
             "least_at = J > least_J ? least_at : point;",
@@ -301,11 +305,6 @@ LAW = (
     *errors_in(
         f"{CORE}/laws/dual.hpp",
         LAWS,
-        (
-            "the change of exp(x) - 1 without the one",
-            "return {e, (e + 1) * a.d};",
-            "return {e, e * a.d};",
-        ),
         (
             "the change of 1/x with one power too few",
             "return {r, -a.d * (r * r)};",

@@ -41,11 +41,6 @@ BEZSOMA_DUAL exp(const Dual<R> &a) {
     const R e = exp(a.v);
     return {e, e * a.d};
 }
-BEZSOMA_DUAL expm1(const Dual<R> &a) {
-    const R e = expm1(a.v);
-    return {e, (e + 1) * a.d};
-}
-BEZSOMA_DUAL log1p(const Dual<R> &a) { return {log1p(a.v), a.d / (1 + a.v)}; }
 /// At zero, where |a| has a kink, the change is taken for zero: the mean of both sides.
 BEZSOMA_DUAL abs(const Dual<R> &a) { return {abs(a.v), a.v < 0 ? -a.d : a.v > 0 ? a.d : R{}}; }
 #undef BEZSOMA_DUAL
