@@ -42,10 +42,10 @@ def licence(name: str) -> str:
     said = metadata(name)
     kinds = [kind for kind in said.get_all("Classifier") or [] if kind.startswith("License ::")]
     named = [kind.rsplit(":: ", 1)[1] for kind in kinds]
-    text = (said["License"] or "").strip()
+    text: str = (said.get("License") or "").strip()
     by_text = [known for words, known in BY_TEXT.items() if words in " ".join(text.split())]
     first = text.split("\n")[0]
-    return said["License-Expression"] or " or ".join(named or by_text) or first or "unknown"
+    return said.get("License-Expression") or " or ".join(named or by_text) or first or "unknown"
 
 
 def is_permissive(said: str) -> bool:
