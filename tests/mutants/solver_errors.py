@@ -172,8 +172,8 @@ COARSE = (
         "x[i * motions + k] -= along * x[i * motions + l];",
         "x[i * motions + k] -= 0 * along * x[i * motions + l];",
         MULTIGRID,
-        argued="another basis of the same motions, whose blocks of six are inverted whole: 14 steps "
-        "against 15 on a cube of 20, as many on five other bodies",
+        argued="another basis of the same motions, whose blocks of six are inverted whole: 14 "
+        "steps against 15 on a cube of 20, as many on five other bodies",
     ),
     Mutant(
         "held components that move rigidly",
@@ -181,8 +181,8 @@ COARSE = (
         "if (!fixed[3 * v + k])",
         "if (v + 1 > 0)",
         MULTIGRID,
-        argued="what is prolonged to held components is cleared: as many steps on eight bodies, one "
-        "more where planes of symmetry hold",
+        argued="what is prolonged to held components is cleared: as many steps on eight bodies, "
+        "one more where planes of symmetry hold",
     ),
     *errors_in(
         f"{CORE}/sweeps.cpp",
