@@ -66,6 +66,13 @@ def run(
             "wherever [refine] says, is below so many mm"
         ),
     ] = None,
+    keep_last: Annotated[
+        Path | None,
+        Parameter(
+            help="where no equilibrium is found under the whole load: the folder to make for the "
+            "last state in balance, marked as no answer"
+        ),
+    ] = None,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> int:
@@ -89,6 +96,7 @@ def run(
             overwrite=overwrite,
             degree=degree,
             tolerance=tolerance,
+            keep_last=keep_last,
             progress=progress,
         )
     return _told(results, folder)

@@ -13,8 +13,8 @@ from typing import Any, NoReturn
 import numpy as np
 import pytest
 
-from bezsoma import InputError, NotConverged
-from bezsoma.case import read_case, run_case, running
+from bezsoma import InputError, NotConverged, cli
+from bezsoma.case import last, read_case, run_case, running, showing
 from bezsoma.errors import BezSomaError
 from bezsoma.results import destination, read_results
 from cases.written import case_file
@@ -340,3 +340,100 @@ def test_results_with_the_tets_of_another_numbering_are_read_the_same(results: P
 def test_the_list_of_files_in_the_summary_is_what_the_folder_holds(finished: Path) -> None:
     summary = json.loads((finished / "summary.json").read_text())
     assert summary["files"] == sorted(path.name for path in finished.iterdir())
+
+
+# What a neo-Hookean block whose right side is pushed through its left comes to.
+CRUSHED = (
+    ("E = 0.015\nnu = 0.3", 'law = "neo-hooke"\nE = 0.015\nnu = 0.3'),
+    ("translation = [0.1, 0, 0]", "translation = [-2.5, 0, 0]"),
+    ("pictures = []", 'pictures = ["front"]'),
+)
+
+
+def test_the_last_state_in_balance_is_kept_and_marked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path, out, kept = case_file(tmp_path, *CRUSHED), tmp_path / "out", tmp_path / "kept"
+    words = ["run", str(path), "-q", "-o", str(out), "--keep-last", str(kept)]
+    assert cli.main(words) == 1
+    said = capsys.readouterr().err
+    assert f"the last state in balance is in {str(kept)!r}, marked as no answer" in said
+    assert "`" not in said
+    assert not out.exists()
+    results = read_results(kept)
+    fraction = results.summary["unfinished"]["fraction"]
+    assert 0.1 < fraction < 1
+    mark = f"NOT THE ANSWER ({100 * fraction:.4g} % of the load)"
+    assert results.unfinished == mark
+    assert results.summary["title"] == f"{mark}: A block"
+    assert "no equilibrium was found" in results.summary["unfinished"]["why"]
+    assert results.summary["expectations"] == []
+    moved = results.displacement.at(np.array([[2.0, 0.5, 0.5]]))[0, 0]
+    assert moved == pytest.approx(-2.5 * fraction, rel=1e-12)
+    readme = (kept / "README.txt").read_text(encoding="utf-8")
+    assert readme.startswith(f"{mark}: A block\n")
+    assert "Beware: this is not the answer but the last state in balance" in readme
+    assert (kept / "case.toml").read_bytes() == path.read_bytes()
+    assert (kept / "before-after-front.png").is_file()
+    assert cli.main(words) == 2
+    assert "results already stand in" in capsys.readouterr().err
+
+
+def test_without_a_folder_the_command_says_how_to_keep_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = case_file(tmp_path, *CRUSHED[:2])
+    assert cli.main(["run", str(path), "-q", "-o", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr().err
+    assert "run again with --keep-last FOLDER (keep_last= of run_case)" in said
+    assert "`" not in said
+    assert [each.name for each in tmp_path.iterdir()] == ["case.toml"]
+
+
+def test_pictures_of_what_is_no_answer_say_so_whatever_their_title(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles: list[str] = []
+
+    def drawn(shots: Any, view: Any, title: str, *rest: Any) -> bytes:
+        titles.append(title)
+        return b""
+
+    path = case_file(tmp_path, *CRUSHED[:2])
+    with pytest.raises(NotConverged, match="marked as no answer") as failure:
+        run_case(path, tmp_path / "out", keep_last=tmp_path / "kept")
+    assert failure.value.last is not None and failure.value.path
+    monkeypatch.setattr(showing, "page", drawn)
+    mark = read_results(tmp_path / "kept").unfinished
+    for title in (None, "Mine"):
+        showing.results_picture(None, tmp_path / "kept", field=None, title=title)
+    assert titles == [f"{mark}: A block", f"{mark}: Mine"]
+
+
+def test_nothing_is_kept_of_a_body_that_bore_nothing(tmp_path: Path) -> None:
+    path = case_file(tmp_path, *CRUSHED[:2], ("[output]", "[solver]\nsteps = 1\n\n[output]"))
+    with pytest.raises(NotConverged, match="nothing under load was in balance, and none is kept"):
+        run_case(path, tmp_path / "out", keep_last=tmp_path / "kept")
+    assert [each.name for each in tmp_path.iterdir()] == ["case.toml"]
+
+
+def test_the_last_state_is_not_kept_where_the_answer_would_be(tmp_path: Path) -> None:
+    path = case_file(tmp_path)
+    with pytest.raises(InputError, match="give it a folder of its own"):
+        run_case(path, tmp_path / "out", keep_last=tmp_path / "out")
+    results = run_case(path, tmp_path / "out", keep_last=tmp_path / "kept")
+    assert results.unfinished == "" and not (tmp_path / "kept").exists()
+
+
+def test_a_disk_that_fills_does_not_hide_why_there_is_no_answer(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*given: Any) -> None:
+        raise OSError(errno.ENOSPC, "full")
+
+    monkeypatch.setattr(last, "write_results", full)
+    path = case_file(tmp_path, *CRUSHED[:2])
+    with pytest.raises(NotConverged, match=r"could not be kept: .*no space is left") as failure:
+        run_case(path, tmp_path / "out", keep_last=tmp_path / "kept")
+    assert "no equilibrium was found" in str(failure.value)
+    assert [each.name for each in tmp_path.iterdir()] == ["case.toml"]

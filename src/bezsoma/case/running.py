@@ -15,6 +15,7 @@ from bezsoma.case.advice import as_written, in_case
 from bezsoma.case.build import body_of
 from bezsoma.case.estimating import estimated
 from bezsoma.case.expectations import checked, motions, probe_points
+from bezsoma.case.last import keeping_last
 from bezsoma.case.quantities import Measured
 from bezsoma.case.reading import Case, read_case
 from bezsoma.case.refining import solved, with_tolerance
@@ -26,7 +27,7 @@ from bezsoma.mesh.nouns import described, path_given
 from bezsoma.mesh.tets import TetMesh
 from bezsoma.refinement.levels import Level, Refined
 from bezsoma.refinement.singular import singularities
-from bezsoma.results import Results, destination
+from bezsoma.results import Destination, Results, destination
 from bezsoma.results.archive import NOTICE
 from bezsoma.results.folder import FORMAT
 from bezsoma.solvers.solution import Solution
@@ -61,6 +62,7 @@ def run_case(
     overwrite: bool = False,
     degree: int | None = None,
     tolerance: float | None = None,
+    keep_last: Path | str | None = None,
     progress: Progress = silent,
 ) -> Results:
     """Solve a case and leave its results folder, whole or not at all; gives what it holds.
@@ -69,10 +71,13 @@ def run_case(
     the file, `tolerance` [mm] that of the one in its table [refine]. The folder is looked at first,
     then the mesh, names, probes and expectations; only then is anything solved. Whether the
     expectations were met stands in `summary["expectations"]`, whether the tolerance was in
-    `summary["refinement"]`.
+    `summary["refinement"]`. Where no answer is found, NotConverged is raised, and the last state
+    in balance is written to the folder `keep_last`, if one is given, marked as no answer: see
+    `Results.unfinished`.
     """
     case = _case(case)
     place = destination(path_given(folder, "run_case(case, folder)"), overwrite=overwrite)
+    last = _place_of_last(place, keep_last, overwrite)
     start = perf_counter()
     progress("mesh", None, "reading the mesh and checking the case")
     mesh = mesh_of(case)
@@ -80,15 +85,20 @@ def run_case(
     probes = probe_points(case, mesh, table)
     body = body_of(case, mesh, case.file.degree if degree is None else degree)
     place.check_room(_size(body))
-    with in_case(case.path.name):
-        solution, levels = solved(case, body, table, probes, progress)
-    if levels is not None:
-        place.check_room(_size(solution.body))
-    summary = summary_of(case, solution, probes, levels)
-    summary["instead"] = {
+    instead = {
         **({} if degree in (None, case.file.degree) else {"degree": degree}),
         **({} if tolerance is None else {"tolerance": float(tolerance)}),
     }
+
+    def told(case: Case, solution: Solution, levels: Refined | None = None) -> dict[str, Any]:
+        summary = summary_of(case, solution, probes, levels)
+        return {**summary, "instead": instead, "seconds": perf_counter() - start}
+
+    with in_case(case.path.name), keeping_last(case, last, told, progress):
+        solution, levels = solved(case, body, table, probes, progress)
+    if levels is not None:
+        place.check_room(_size(solution.body))
+    summary = told(case, solution, levels)
     if levels is None:
         with_error(summary, estimated(case, solution, probes, progress))
     else:
@@ -98,6 +108,19 @@ def run_case(
         write_results(partial, case, solution, summary, progress)
     mesh, pressure = solution.body.mesh, solution.pressure
     return Results(place.folder, mesh, solution.displacement, summary, case.text, pressure)
+
+
+def _place_of_last(place: Destination, folder: Any, overwrite: bool) -> Destination | None:
+    """Where the last state in balance goes if there is no answer; never where the answer would."""
+    if folder is None:
+        return None
+    found = destination(path_given(folder, "keep_last= of run_case"), overwrite=overwrite)
+    if found.folder == place.folder:
+        raise InputError(
+            f"{str(place.folder)!r} is for the answer, and what --keep-last keeps is none; give "
+            "it a folder of its own"
+        )
+    return found
 
 
 def _case(given: Any) -> Case:

@@ -51,7 +51,7 @@ def results_picture(
         raise InputError(unknown("mesh to draw over it", over, [ORIGINAL], "results"))
     read = _read(results)
     shot = shot_of(read, field, plane=plane, before=over == ORIGINAL, **how)
-    title = read.summary["title"] if title is None else title
+    title = _title(read, title)
     content = page([shot], view, title, size, "results_picture(path, results)")
     if path is not None:
         written(path, content, overwrite)
@@ -87,7 +87,7 @@ def results_film(
         turn=turn,
         frames=frames,
         seconds=seconds,
-        title=read.summary["title"] if title is None else title,
+        title=_title(read, title),
         size=size,
         overwrite=overwrite,
         progress=progress,
@@ -118,6 +118,13 @@ def view_of(plane: Plane | str | None) -> str:
     if plane is None:
         return "three-quarter"
     return _ALONG[int(np.abs(Plane.of(plane).normal).argmax())]
+
+
+def _title(results: Results, given: str | None) -> str:
+    """The title given, or that of the results; a state that is no answer is marked in any case."""
+    if given is None:
+        return str(results.summary["title"])
+    return f"{results.unfinished}: {given}" if results.unfinished else given
 
 
 def _read(results: Results | Path | str) -> Results:

@@ -51,6 +51,15 @@ class Results:
     pressure: Field | BrokenField | None = None
     """The pressure, MPa, where it was an unknown of its own."""
 
+    @property
+    def unfinished(self) -> str:
+        """Empty for an answer; else what is to be said first: that it is none, at which load.
+
+        `summary["unfinished"]` then has this `mark`, the `fraction` of the load that the state
+        bears, and `why` the run came no further.
+        """
+        return str(self.summary.get("unfinished", {}).get("mark", ""))
+
 
 def write_fields(
     folder: Path, displacement: Field, pressure: Field | BrokenField | None = None

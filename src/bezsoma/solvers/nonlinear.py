@@ -384,13 +384,16 @@ def _unreached(reached: Reached, last: Solution) -> NotConverged:
     history = [iteration.residual for iteration in reached.path]
     exact = " a larger rtol, for only rounding is left of the residual;"
     helps = exact if min(history, default=1.0) < ROUNDING and reached.fraction == 0 else ""
-    return NotConverged(
+    error = NotConverged(
         f"at {100 * reached.tried:.4g} % of the load no equilibrium was found, the last is at "
         f"{100 * reached.fraction:.4g} %: {reached.why}. What helps:{helps} a smaller load or "
         "motion, smaller steps (steps='auto' halves them as far as 1/1024), a finer mesh where it "
-        "is strained most, a softer law; the last state in balance is `last` of this error",
+        "is strained most, a softer law",
         history,
         last=last,
         fraction=reached.fraction,
         path=reached.path,
     )
+    if reached.fraction > 0:
+        error.add_note("the last state in balance is `last` of this error")
+    return error
