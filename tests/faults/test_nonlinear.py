@@ -12,9 +12,13 @@ import pytest
 
 import bezsoma as bz
 from bezsoma.arrays import Floats
+from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.nonlinear import nonlinear_equations
+from bezsoma.mesh.control_net import ControlNet
 from bezsoma.solvers import memory
 from bezsoma.solvers.load_steps import loaded
 from bezsoma.solvers.newton import Balance, Breakdown, Correction, Rule, System
+from bezsoma.solvers.nonlinear import form_of
 
 
 def spring_of_volume(H: Floats) -> Floats:
@@ -280,6 +284,25 @@ def test_halving_ends_early_where_ellipticity_is_lost(doubt: str) -> None:
     assert doubt in reached.why and "no correction" in reached.why
     assert 0.6 - (0.25 if doubt else 0.002) < reached.fraction <= 0.6
     assert (len(reached.path) < 4) == bool(doubt)
+
+
+@pytest.mark.parametrize("chosen", ["direct", "multigrid"])
+def test_lost_ellipticity_is_told_beside_a_pressure(chosen: str) -> None:
+    """Veronda-Westmann's law drawn out to 1.8 two ways; to 1.2 it is sound."""
+    soft = body(bz.VerondaWestmann(1.0, 0.05, np.inf), incompressible=True)
+    net = ControlNet(soft.mesh, soft.degree)
+    equations = nonlinear_equations(soft, net, prescribed(soft, net))
+    system = form_of(soft, equations, 6, chosen, "newton", 1).system
+    for stretch, said in (
+        (1.0, ""),
+        (1.2, ""),
+        (1.8, "has lost strong ellipticity in 6 of 6 tets"),
+    ):
+        x = np.zeros(len(system.held))
+        stretched = net.points * (np.array([stretch, stretch, stretch**-2]) - 1)
+        x[: stretched.size] = stretched.ravel()
+        doubt = system.doubt(x)
+        assert said in doubt and bool(said) == bool(doubt)
 
 
 def test_what_went_otherwise_is_in_the_path() -> None:

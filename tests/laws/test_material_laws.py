@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import null_space
 from scipy.spatial.transform import Rotation
 
 import bezsoma as bz
+from bezsoma.mechanics.ellipticity import layers, least_resistance_beside
 from bezsoma.mechanics.laws import Law, at_rest
 from laws.law_table import LAWS, NU, E
 from laws.plain_laws import dots, transposed
@@ -134,3 +136,30 @@ def test_stiffening_without_poisson_effect_has_a_symmetric_tangent() -> None:
     law, other = bz.Stiffening(E, 0.0, 5.0), np.roll(DH, 7, axis=0)
     one, two = dots(law.derivative(H, DH), other), dots(law.derivative(H, other), DH)
     assert np.abs(one - two).max() < CLOSED_FORM * np.abs(one).max()
+
+
+@pytest.mark.parametrize(("stretch", "lost"), [(1.3, False), (1.8, True)])
+def test_what_a_layer_resists_beside_a_pressure_is_how_its_energy_bends(
+    stretch: float, lost: bool
+) -> None:
+    """Along a (x) m with F^-T m . a = 0 no volume changes: the energy alone decides, p does not.
+
+    Veronda-Westmann's law, drawn out two ways, gives way where stretch^2 > 2 exp(c2 (I1 - 3)).
+    """
+    law, h = bz.VerondaWestmann(1.0, 0.05, np.inf), 1e-3
+    turn = Rotation.from_rotvec([0.4, -0.9, 0.3]).as_matrix()
+    F = turn @ np.diag([stretch, stretch, stretch**-2])
+    angles = np.linspace(0, np.pi, 181)
+    along = []
+    for m in layers():
+        a = (
+            np.stack([np.cos(angles), np.sin(angles)], axis=1)
+            @ null_space((m @ np.linalg.inv(F))[None]).T
+        )
+        along.append(a[:, :, None] * m)
+    slip, none = np.concatenate(along), np.zeros(len(along) * len(angles))
+    W = [law.mixed_energy(F - np.eye(3) + step * slip, none) for step in (-h, 0, h)]
+    least = ((W[0] - 2 * W[1] + W[2]) / h**2).min()
+    found = least_resistance_beside(law, (F - np.eye(3))[None], np.array([7.0]))[0]
+    assert abs(found - least) < 1e-5
+    assert (found < 0) == lost

@@ -138,6 +138,20 @@ PYTHON = (
         ("src/bezsoma/mechanics/ellipticity.py", "src/bezsoma/equations/ellipticity.py"),
     ),
     Mutant(
+        "an acoustic tensor beside a pressure of a law whose volume is free",
+        f"{MECHANICS}/ellipticity.py",
+        "across @ Q @ across + size * along",
+        "Q",
+        ("tests/laws/test_material_laws.py",),
+    ),
+    Mutant(
+        "ellipticity that is not looked at beside a pressure",
+        f"{SOLVERS}/nonlinear_mixed.py",
+        "lambda x: lost_beside_pressure(self.internal, *self.parted(x)),",
+        'lambda x: "",',
+        ("tests/faults/test_nonlinear.py",),
+    ),
+    Mutant(
         "load steps that are halved on where the law has lost its ellipticity",
         f"{SOLVERS}/load_steps.py",
         "if last or doubt:",

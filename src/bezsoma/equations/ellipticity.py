@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
+
 import numpy as np
 
 from bezsoma import bernstein
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Floats, Ints
+from bezsoma.equations.mixed_pointwise import MixedPointwise
 from bezsoma.equations.pointwise import Pointwise
-from bezsoma.mechanics.ellipticity import least_resistance
+from bezsoma.mechanics.ellipticity import least_resistance, least_resistance_beside
+from bezsoma.mesh.tets import TetMesh
 
 EXACTNESS = 2
 """Four points a tet: what is lost is lost in whole tets."""
@@ -28,13 +33,25 @@ def lost_ellipticity(pointwise: Pointwise, u: Floats) -> str:
     'the law has lost strong ellipticity in 6 of 6 t'
     """
     points = Pointwise(pointwise.net, pointwise.laws, EXACTNESS, once=True)
-    mesh, lost = pointwise.net.mesh, 0
-    least, tet, at = 0.0, -1, 0
-    for law, tets in points.runs():
-        if law.linear:
-            continue
-        with np.errstate(all="ignore"):
-            found = np.nan_to_num(least_resistance(law, points.gradients(u, tets)), nan=0.0)
+    laws = ((law, tets) for law, tets in points.runs() if not law.linear)
+    found = ((tets, least_resistance(law, points.gradients(u, tets))) for law, tets in laws)
+    with np.errstate(all="ignore"):
+        return _told(pointwise.net.mesh, found)
+
+
+def lost_beside_pressure(internal: MixedPointwise, u: Floats, p: Floats) -> str:
+    """The same at u (c, 3) mm and p (cp,) MPa, for laws beside a pressure."""
+    points = replace(internal, exactness=EXACTNESS).points(u, p)
+    found = ((tets, least_resistance_beside(law, H, at)) for law, tets, H, at in points)
+    with np.errstate(all="ignore"):
+        return _told(internal.net.mesh, found)
+
+
+def _told(mesh: TetMesh, resistances: Iterable[tuple[Ints, Floats]]) -> str:
+    """Where the least of the resistances (t, q) of some tets is, if it is negative."""
+    lost, least, tet, at = 0, 0.0, -1, 0
+    for tets, resistance in resistances:
+        found = np.nan_to_num(resistance, nan=0.0)
         lost += int((found.min(axis=1) < 0).sum())
         if found.min() < least:
             t, at = map(int, np.unravel_index(found.argmin(), found.shape))

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 
 from bezsoma.arrays import Floats, frozen
-from bezsoma.mechanics.laws import Law
+from bezsoma.mechanics.laws import Law, MixedLaw
 
 LAYERS = 61
 """Normals of layers that are tried, over half a sphere: none is further than 12 degrees off."""
@@ -57,9 +57,62 @@ def least_resistance(law: Law, H: Floats) -> Floats:
     for m in layers():
         Q = np.empty(H.shape)
         for k in range(3):
-            dH = np.zeros((3, 3))
-            dH[k] = m
-            Q[..., :, k] = law.derivative(H, np.broadcast_to(dH, H.shape)) @ m
+            Q[..., :, k] = law.derivative(H, _slip(k, m, H)) @ m
         both = Q + np.swapaxes(Q, -1, -2)
         least = np.minimum(least, np.linalg.eigvalsh(both)[..., 0] / 2)
     return least
+
+
+def least_resistance_beside(law: MixedLaw, H: Floats, p: Floats) -> Floats:
+    """The same (..., ) MPa of a law beside a pressure p (...) MPa, which gives way as c = 0 has it.
+
+    From dc = 0 follows dp = -(dc/dH : dH) / (dc/dp): with n = (dc/dH) m and v = (dP/dp) m
+
+        Q(m) -> Q(m) - v n^T / (dc/dp)
+
+    Where dc/dp = 0 the law is incompressible, and a layer can only give way along a with n . a = 0.
+
+    >>> from bezsoma.mechanics.hyperelastic import MooneyRivlin, NeoHooke
+    >>> law = MooneyRivlin(c1=0.5, c2=0.2, kappa=5.0)
+    >>> H = np.array([[0.3, 0.5, 0.0], [-0.2, 0.1, 0.4], [0.0, 0.3, -0.2]])[None]
+    >>> p = -5.0 * (np.linalg.det(np.eye(3) + H) - 1)
+    >>> bool(np.allclose(least_resistance_beside(law, H, p), least_resistance(law, H), rtol=1e-12))
+    True
+
+    Incompressible neo-Hooke resists by mu across n, at any strain without change of volume and at
+    any pressure:
+
+    >>> H = np.diag([1.44, 1 / 1.2, 1 / 1.2])[None] - np.eye(3)
+    >>> found = least_resistance_beside(NeoHooke(E=3.0, nu=0.5), H, np.array([7.0]))
+    >>> bool(abs(found[0] - 1.0) < 1e-12)
+    True
+    """
+    least, none = np.full(H.shape[:-2], np.inf), np.zeros_like(p)
+    of_p, along = law.mixed_derivative(H, p, np.zeros_like(H), np.ones_like(p))
+    for m in layers():
+        Q, n = np.empty(H.shape), np.empty(H.shape[:-1])
+        for k in range(3):
+            change, n[..., k] = law.mixed_derivative(H, p, _slip(k, m, H), none)
+            Q[..., :, k] = change @ m
+        if np.any(along):
+            Q = Q - (of_p @ m)[..., :, None] * n[..., None, :] / along[..., None, None]
+        both = (Q + np.swapaxes(Q, -1, -2)) / 2
+        if not np.any(along):
+            both = _across(both, n)
+        least = np.minimum(least, np.linalg.eigvalsh(both)[..., 0])
+    return least
+
+
+def _slip(k: int, m: Floats, H: Floats) -> Floats:
+    """The change of H (..., 3, 3) where a layer of normal m (3,) gives way along axis k."""
+    dH = np.zeros((3, 3))
+    dH[k] = m
+    return np.broadcast_to(dH, H.shape)
+
+
+def _across(Q: Floats, n: Floats) -> Floats:
+    """Q (..., 3, 3) across n (..., 3), and along it more than across."""
+    along = n[..., :, None] * n[..., None, :] / (n * n).sum(axis=-1)[..., None, None]
+    across = np.eye(3) - along
+    size = np.abs(Q).sum(axis=(-1, -2))[..., None, None]
+    return np.asarray(across @ Q @ across + size * along)

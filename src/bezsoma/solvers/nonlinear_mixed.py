@@ -11,6 +11,7 @@ from scipy.sparse import block_diag, csc_array, csr_array
 
 from bezsoma import bernstein
 from bezsoma.arrays import Bools, Floats, frozen
+from bezsoma.equations.ellipticity import lost_beside_pressure
 from bezsoma.equations.enclosed import refuse_changed_volume
 from bezsoma.equations.internal import core_law
 from bezsoma.equations.level import undetermined, without_mean
@@ -104,7 +105,15 @@ class MixedProblem:
     def system(self, tangent: Callable[[Floats, float], Linearised]) -> System:
         """What Newton has to know."""
         parts = (slice(0, self.split), slice(self.split, None))
-        return System(self.held, parts, (1.0, self.weight), self.given, self.balance, tangent)
+        return System(
+            self.held,
+            parts,
+            (1.0, self.weight),
+            self.given,
+            self.balance,
+            tangent,
+            lambda x: lost_beside_pressure(self.internal, *self.parted(x)),
+        )
 
 
 def mixed_problem(
