@@ -192,6 +192,37 @@ def test_given_step_that_fails_says_what_was_refused_and_where(solver: str) -> N
     assert any(f"the last is at 0 %: {end}" in said for end in ends)
 
 
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+@pytest.mark.parametrize("more", [{}, {"incompressible": True}])
+@pytest.mark.parametrize(
+    ("law", "what"),
+    [
+        (bz.Ogden([1e300], [1e-300], 5.0), ("energy is no finite number in balance",) * 2),
+        (
+            bz.VerondaWestmann(1e300, 1e300, 5.0),
+            ("stress is no finite number at rest", "shear modulus is no finite number at rest"),
+        ),
+    ],
+)
+def test_law_without_numbers_is_refused(
+    law: Any, what: tuple[str, str], more: Any, solver: str
+) -> None:
+    """mu/alpha and c1 c2 leave float64: nobody is told that a smaller step may help."""
+    with pytest.raises(bz.InputError) as refusal:
+        bz.solve(body(law, **more), solver=solver)
+    assert f"region 'tissue' is {law!r}, whose {what[bool(more)]}" in str(refusal.value)
+    assert "may get past it" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("more", [{}, {"incompressible": True}])
+def test_tangent_without_numbers_is_no_lost_ellipticity(more: Any) -> None:
+    """Its acoustic tensors have no eigenvalues."""
+    law = bz.Guccione(1e200, 1e200, 1.0, 1.0, 5.0, (1, 0, 0))
+    with pytest.raises(bz.NotConverged, match="range of numbers") as failure:
+        bz.solve(body(law, **more))
+    assert "ellipticity" not in str(failure.value)
+
+
 def test_more_exact_than_rounding() -> None:
     with pytest.raises(bz.NotConverged, match="only rounding is left of the residual"):
         bz.solve(body(), rtol=1e-30)

@@ -87,7 +87,9 @@ class MixedPointwise:
         """The stored energy at u and p, N mm."""
         weights, total = self.shape.rule[1], 0.0
         for law, tets, H, pressure in self.points(u, p):
-            W = law.mixed_energy(H, pressure)
+            with np.errstate(all="ignore"):
+                W = law.mixed_energy(H, pressure)
+            self.shape.all_finite(W, tets, "an energy")
             total += float(np.einsum("tq,q,t->", W, weights, self.net.mesh.volumes[tets]))
         return total
 

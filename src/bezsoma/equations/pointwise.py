@@ -149,19 +149,21 @@ class Pointwise:
         if bad.any():
             raise self._failure("J", J, bad, tets)
 
-    def all_finite(self, P: Floats, tets: Ints) -> None:
-        """Raises Inadmissible where a stress is no finite number."""
-        bad = np.asarray(~np.isfinite(P).all(axis=(2, 3)))
+    def all_finite(self, P: Floats, tets: Ints, of: str = "a stress") -> None:
+        """Raises Inadmissible where a stress (t, q, 3, 3) or energy (t, q) is no finite number."""
+        bad = np.asarray(~np.isfinite(P).all(axis=tuple(range(2, P.ndim))))
         if bad.any():
-            raise self._failure("number", np.where(bad, np.inf, 0.0), bad, tets)
+            raise self._failure("number", np.where(bad, np.inf, 0.0), bad, tets, of)
 
-    def _failure(self, what: str, values: Floats, bad: Bools, tets: Ints) -> Inadmissible:
+    def _failure(
+        self, what: str, values: Floats, bad: Bools, tets: Ints, of: str = ""
+    ) -> Inadmissible:
         t, q = np.unravel_index(int(np.argmax(bad)), bad.shape)
         mesh, tet = self.net.mesh, int(tets[t])
         bary, _ = bernstein.simplex(self.exactness, 3)
         x, y, z = map(float, bary[q] @ mesh.points[mesh.tets[tet]])
         region, value = mesh.regions[mesh.region[tet]], float(values[t, q])
-        said = f"J = det F = {value:.3g}" if what == "J" else "a stress that is no finite number"
+        said = f"J = det F = {value:.3g}" if what == "J" else f"{of} that is no finite number"
         return Inadmissible(
             f"{said} in tet {tet} of region {region!r} at ({x:.4g}, {y:.4g}, {z:.4g}) mm",
             what,
@@ -177,6 +179,7 @@ class Pointwise:
         total = 0.0
         for law, tets in self.runs():
             W = density(law, self.gradients(u, tets))
+            self.all_finite(W, tets, "an energy")
             total += float(np.einsum("tq,q,t->", W, weights, self.net.mesh.volumes[tets]))
         return total
 

@@ -58,8 +58,8 @@ def least_resistance(law: Law, H: Floats) -> Floats:
         Q = np.empty(H.shape)
         for k in range(3):
             Q[..., :, k] = law.derivative(H, _slip(k, m, H)) @ m
-        both = Q + np.swapaxes(Q, -1, -2)
-        least = np.minimum(least, np.linalg.eigvalsh(both)[..., 0] / 2)
+        both = (Q + np.swapaxes(Q, -1, -2)) / 2
+        least = np.minimum(least, _least_eigenvalue(both))
     return least
 
 
@@ -99,7 +99,7 @@ def least_resistance_beside(law: MixedLaw, H: Floats, p: Floats) -> Floats:
         both = (Q + np.swapaxes(Q, -1, -2)) / 2
         if not np.any(along):
             both = _across(both, n)
-        least = np.minimum(least, np.linalg.eigvalsh(both)[..., 0])
+        least = np.minimum(least, _least_eigenvalue(both))
     return least
 
 
@@ -108,6 +108,12 @@ def _slip(k: int, m: Floats, H: Floats) -> Floats:
     dH = np.zeros((3, 3))
     dH[k] = m
     return np.broadcast_to(dH, H.shape)
+
+
+def _least_eigenvalue(Q: Floats) -> Floats:
+    """That of Q (..., 3, 3); 0 where Q has left the range of numbers, which tells nothing."""
+    finite = np.isfinite(Q).all(axis=(-1, -2), keepdims=True)
+    return np.asarray(np.linalg.eigvalsh(np.where(finite, Q, 0.0))[..., 0])
 
 
 def _across(Q: Floats, n: Floats) -> Floats:

@@ -20,7 +20,7 @@ from bezsoma.equations.nonlinear import NonlinearEquations, nonlinear_equations
 from bezsoma.equations.pointwise import Internal, Pointwise
 from bezsoma.equations.rigid import refuse_rigid_motions
 from bezsoma.equations.stress import swelling
-from bezsoma.errors import InputError, NotConverged, unknown
+from bezsoma.errors import Inadmissible, InputError, NotConverged, unknown
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import Law, Secant, at_rest
 from bezsoma.mechanics.loads import Pressure, exactness_checked
@@ -128,10 +128,16 @@ def nonlinear_solution(
     with watch.stage("solving", f"{loading.method}, {chosen}"):
         rest = np.zeros(len(form.system.held))
         begin = None if start is None else form.begin(start)
-        reached = loaded(form.system, rest, steps, rule, _teller(watch), begin)
+        try:
+            reached = loaded(form.system, rest, steps, rule, _teller(watch), begin)
+        except Inadmissible as failure:  # at rest: all other states are met by a smaller step
+            raise _unfit(body, failure, "stress is no finite number at rest") from failure
     how = f"{_NAMES[loading.method]}, {_SOLVES[chosen]}"
     with watch.stage("reactions", "and energy"):
-        solution = _solution(equations, form, reached, how, dict(watch.timings))
+        try:
+            solution = _solution(equations, form, reached, how, dict(watch.timings))
+        except Inadmissible as failure:  # the forces were in balance, so that it is the energy
+            raise _unfit(body, failure, "energy is no finite number in balance") from failure
     if reached.fraction < 1:
         raise _unreached(reached, solution)
     return solution
@@ -378,6 +384,15 @@ def _with_event(path: tuple[Iteration, ...], said: str) -> tuple[Iteration, ...]
     if not said or not path:
         return path
     return (*path[:-1], replace(path[-1], events=(*path[-1].events, said)))
+
+
+def _unfit(body: Body, failure: Inadmissible, what: str) -> InputError:
+    """The refusal of a law that has no number where any law has to have one."""
+    law = body.material_of_region[body.mesh.regions.index(failure.region)]
+    return InputError(
+        f"region {failure.region!r} is {law!r}, whose {what} (tet {failure.tet}): its parameters "
+        "leave the range of numbers, which no smaller step of the load can help; give others"
+    )
 
 
 def _unreached(reached: Reached, last: Solution) -> NotConverged:

@@ -130,9 +130,20 @@ def mixed_problem(
     refuse_undetermined(net, pressures, equations.held, soft, modes)
     refuse_changed_volume(net, pressures, modes, laws, equations.known.values)
     stiffness = frozen(np.array([shear_at_rest(law) for law in laws]))
+    _refuse_unfit(body, stiffness)
     internal = MixedPointwise(net, pressures, laws, exactness)
     fast = _fast(internal, body, threads)
     return MixedProblem(equations, internal, fast, modes, stiffness)
+
+
+def _refuse_unfit(body: Body, stiffness: Floats) -> None:
+    """Refuse a law whose shear modulus, MPa, has left the range of numbers."""
+    for region, law, G in zip(body.mesh.regions, body.material_of_region, stiffness, strict=True):
+        if not np.isfinite(G):
+            raise InputError(
+                f"region {region!r} is {law!r}, whose shear modulus is no finite number at rest: "
+                "its parameters leave the range of numbers; give others"
+            )
 
 
 def _fast(internal: MixedPointwise, body: Body, threads: int) -> MixedPointwise | PointwiseMixed:
