@@ -95,6 +95,22 @@ IN_THE_FILE: dict[str, tuple[Change, list[str]]] = {
         ("cells = [2, 1, 1]", "cells = [0, 1, 1]"),
         ["mesh.parameters: the solid 'block' refuses", "line 7"],
     ),
+    "unknown law": (
+        ("E = 0.015", 'law = "neo-hook"\nE = 0.015'),
+        [
+            "materials.tissue.law: 'neo-hook' cannot stand here",
+            "'stiffening'",
+            "(did you mean 'neo-hooke'?), line 10",
+        ],
+    ),
+    "a law that is like none": (
+        ("E = 0.015", 'law = "xxx"\nE = 0.015'),
+        ["materials.tissue.law: 'xxx' cannot stand here", "or 'guccione', line 10"],
+    ),
+    "unknown iteration": (
+        ("[output]", '[solver]\niteration = "newtn"\n\n[output]'),
+        ["solver.iteration: 'newtn' cannot stand here", "(did you mean 'newton'?), line 37"],
+    ),
     "E and G": (("nu = 0.3", "G = 0.3"), ["materials.tissue: give E and nu, or G and kappa"]),
     "E below zero": (("E = 0.015", "E = -1"), ["materials.tissue: E = -1 MPa", "positive"]),
     "nu beyond 1/2": (("nu = 0.3", "nu = 0.6"), ["materials.tissue: nu = 0.6", "at most 1/2"]),

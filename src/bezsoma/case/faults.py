@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, get_args
@@ -122,7 +123,18 @@ def _message(error: dict[str, Any], trace: Trace) -> str:
         return f"{given!r} is no word: give a letter, then letters, digits, '-' and '_'"
     if kind in LIMITS:
         return f"{given!r} is out of range: {_range(trace)} can stand here"
-    return f"{given!r} cannot stand here: {error['msg'][0].lower()}{error['msg'][1:]}"
+    hint = _meant(given, error["ctx"]["expected"]) if kind == "literal_error" else ""
+    return f"{given!r} cannot stand here: {error['msg'][0].lower()}{error['msg'][1:]}{hint}"
+
+
+def _meant(given: Any, expected: str) -> str:
+    """The nearest of the words in pydantic's list of those that can stand, if one is near.
+
+    >>> _meant("neo-hook", "'linear', 'neo-hooke' or 'ogden'")
+    " (did you mean 'neo-hooke'?)"
+    """
+    near = difflib.get_close_matches(str(given), re.findall("'([^']*)'", expected), n=1)
+    return f" (did you mean {near[0]!r}?)" if near else ""
 
 
 @dataclass
