@@ -85,7 +85,8 @@ def solve(
             of every solver but SuperLU's own arithmetic has the same bits for any number.
         steps: for a body that is not linear, in how many steps the load is put on: a number, the
             fractions of the load ending with 1, or "auto": the whole at once, halved where no
-            equilibrium is found, and longer again where it is found soon.
+            equilibrium is found, and longer again where it is found soon. Steps that are given
+            are taken as they are: where one fails it is not halved, and NotConverged is raised.
         method: for a body that is not linear, "newton", "modified" (the tangent at the start of
             each step is kept) or "secant" (the paper's eq. 51, for the stiffening laws).
         exactness: up to which degree the quadrature of laws that are not linear is exact, at least
