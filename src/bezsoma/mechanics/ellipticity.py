@@ -17,6 +17,9 @@ from bezsoma.mechanics.laws import Law, MixedLaw
 LAYERS = 61
 """Normals of layers that are tried, over half a sphere: none is further than 12 degrees off."""
 
+ROUNDING = 1e-13
+"""An eigenvalue that is no larger part of the largest than this is none."""
+
 
 @cache
 def layers() -> Floats:
@@ -111,9 +114,18 @@ def _slip(k: int, m: Floats, H: Floats) -> Floats:
 
 
 def _least_eigenvalue(Q: Floats) -> Floats:
-    """That of Q (..., 3, 3); 0 where Q has left the range of numbers, which tells nothing."""
+    """That of Q (..., 3, 3); 0 where rounding decides or Q has left the range of numbers.
+
+    An exponential makes Q so stiff along one axis that the sign of the least is that of an error:
+
+    >>> n = np.array([1.0, 2.0, 3.0])
+    >>> _least_eigenvalue(1e300 * np.outer(n, n) + np.eye(3)), _least_eigenvalue(-np.eye(3))
+    (array(0.), array(-1.))
+    """
     finite = np.isfinite(Q).all(axis=(-1, -2), keepdims=True)
-    return np.asarray(np.linalg.eigvalsh(np.where(finite, Q, 0.0))[..., 0])
+    found = np.linalg.eigvalsh(np.where(finite, Q, 0.0))
+    sure = np.abs(found[..., 0]) > ROUNDING * np.abs(found[..., 2])
+    return np.where(sure, found[..., 0], 0.0)
 
 
 def _across(Q: Floats, n: Floats) -> Floats:
