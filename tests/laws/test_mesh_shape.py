@@ -49,6 +49,20 @@ def test_orientation_of_thin_tets_is_exact(height: float, scale: float, seed: in
     assert signs[0] == (1 if exact(points) > 0 else -1)
 
 
+@pytest.mark.parametrize("width", [3e-9, 1e-9])
+def test_which_way_round_a_needle_is_does_not_hang_on_rounding(width: float) -> None:
+    """Its determinant, some width squared, is as small as what rounds in the terms of its sum."""
+    tip = np.array([[0, 0, 1.0], [width, 0, 0], [0, width, 0], [0, 0, 0]])
+    random, rounded = np.random.default_rng(2), 0
+    for _ in range(200):
+        points = tip @ np.linalg.qr(random.normal(size=(3, 3)))[0].T
+        signs, flat = flat_tets(points, ONE)
+        true = exact(points)
+        assert flat[0] or signs[0] == (1 if true > 0 else -1)
+        rounded += determinants(points[ONE])[0] * true <= 0
+    assert rounded > 10
+
+
 @pytest.mark.parametrize("width", [1e-3, 1e-5, 1e-7])
 def test_needles_are_not_flat(width: float) -> None:
     """Volume over length cubed is width squared, but the tet is as thick as it is wide."""
