@@ -9,8 +9,8 @@ import pytest
 from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats
 from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.mixed_pointwise_free import PointwiseMixed
 from bezsoma.equations.pointwise_free import PointwiseFree
-from bezsoma.equations.pointwise_mixed import PointwiseMixed
 from bezsoma.errors import Inadmissible
 from bezsoma.mesh import ControlNet, TetMesh, block
 from laws import plain_energies as plain

@@ -19,8 +19,8 @@ from bezsoma.equations.locked import refuse_undetermined
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.mixed import pressure_mass
 from bezsoma.equations.mixed_pointwise import MixedPointwise
+from bezsoma.equations.mixed_pointwise_free import PointwiseMixed
 from bezsoma.equations.nonlinear import NonlinearEquations
-from bezsoma.equations.pointwise_mixed import PointwiseMixed
 from bezsoma.errors import InputError, NotConverged
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import FunctionLaw, MixedLaw, shear_at_rest
