@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The chin of the real face: what a solution says of its error, beside a much finer solution.
 
-experiments/face_error.py has the same for higher degrees, and docs/verification/face_error.md what
+studies/face_error.py has the same for higher degrees, and docs/verification/face_error.md what
 came out.
 """
 

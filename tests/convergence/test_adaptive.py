@@ -43,7 +43,7 @@ def test_uniform_meshes_creep() -> None:
     ("degree", "most", "least"), [(1, 10_000, -0.28), (2, 20_000, -0.43), (3, 20_000, -0.45)]
 )
 def test_small_tets_at_the_edge_run(degree: int, most: int, least: float) -> None:
-    """`least` is what is seen at so few unknowns; experiments/l_block.py goes on to the limit."""
+    """`least` is what is seen at so few unknowns; studies/l_block.py goes on to the limit."""
     found = refined(l_body(l_mesh(), degree), most_unknowns=most)
     assert late(found.levels) < least
     # The estimate is worth something beside the truth.

@@ -38,7 +38,7 @@ BULK = 0.6
 """The part of the error that the tets to refine carry."""
 TIMES = 2
 """How often they are cut in two. Once gives the best meshes and the most levels, three times halves
-every edge; two cost least in all (experiments/l_block.py)."""
+every edge; two cost least in all (studies/l_block.py)."""
 HIGHEST = 8
 """The highest degree of a level: the estimates take two more, and ten is the highest there is."""
 MOST_UNKNOWNS = 500_000

@@ -4,8 +4,8 @@
 The L-shaped block of tests/l_block.py: pulled at one end, rollers elsewhere, so that nothing but
 the inward edge is singular, where the displacement goes with r^0.5445. Run as
 
-    python experiments/l_block.py [folder] [most unknowns]
-    python experiments/l_block.py far [folder] [most unknowns]
+    python studies/l_block.py [folder] [most unknowns]
+    python studies/l_block.py far [folder] [most unknowns]
 
 It leaves l_block.csv and l_block.png in the folder (docs/images where none is given). Errors are in
 the energy norm, relative, from the energies of `ENERGY` and of each level; beside them stand those

@@ -5,7 +5,7 @@ Four bodies (a known displacement, Cook's membrane, an L with its singular edge,
 contrast 20 that is held and moved as a face is), three meshes each, degrees 1 to 4; and 200 random
 ones. The truth is known, or comes from a mesh graded towards the singular lines in degree 6. Run as
 
-    python experiments/errors.py [folder] [bodies|random|picture]
+    python studies/errors.py [folder] [bodies|random|picture]
 
 It leaves errors_bodies.csv, errors_random.csv and errors.png in the folder (docs/images where none
 is given), each row as soon as it is known; docs/theory/error.md discusses them.

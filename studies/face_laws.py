@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the law changes on a real face, in mm: the table and picture of face_laws.md.
 
-    python experiments/face_laws.py table [degree ...]
-    python experiments/face_laws.py picture "15 degrees open" docs/images/face_laws.png
+    python studies/face_laws.py table [degree ...]
+    python studies/face_laws.py picture "15 degrees open" docs/images/face_laws.png
 
 Bodies, motions and laws are those of `bezsoma experiment face_laws`, and two laws more: the paper's
 own stiffening (Frobenius), which has no energy, and the one with the energy norm.

@@ -6,7 +6,7 @@ mean displacement of the skin within 3 mm of the chin. Rows: degrees 1 to 4 on t
 and degree 2 on the mesh cut once and twice for the sake of that mean. The truth is the answer of
 degree 5 (the large mesh: 4) on the mesh that was cut once; it comes last. Run as
 
-    python experiments/face_error.py [folder] [small|large]
+    python studies/face_error.py [folder] [small|large]
 
 with the meshes where the cases look for them. It leaves face_error_small.csv (or _large) in the
 folder (docs/verification where none is given), each row as soon as it is known.

@@ -5,7 +5,7 @@ The whole mandible moves 5 mm forward at degree 2, nu = 0.45, the skull held and
 predictions are compared at the vertices of the skin of face_large. Run as
 
     bezsoma model ../shared/data/visible_human_head/head_ct.nrrd -o model --settings box.toml
-    python experiments/face_meshes.py model
+    python studies/face_meshes.py model
 
 with face_large where the cases look for it, and for its region in box.toml
 
