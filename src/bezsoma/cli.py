@@ -383,7 +383,8 @@ def tags_named(text: str, option: str) -> dict[str, int]:
     for entry in text.split(","):
         name, equals, tag = (part.strip() for part in entry.partition("="))
         if not (name and equals and tag.lstrip("-").isdigit()):
-            raise InputError(f"{option}: {entry!r} is no name with a tag; write skin=1,jaw=3")
+            example = "fat=1,muscle=2" if option == "--regions" else "skin=1,jaw=3"
+            raise InputError(f"{option}: {entry!r} is no name with a tag; write {example}")
         if name in tags:
             raise InputError(f"{option}: {name!r} is named twice; give each tag a name of its own")
         tags[name] = int(tag)

@@ -71,6 +71,15 @@ class MissingExtra(BezSomaError, ImportError):
     """An optional package is not installed; the message has the line that installs it."""
 
 
+def counted(number: int, thing: str) -> str:
+    """So many things, one in the singular.
+
+    >>> [counted(n, "tet") for n in (0, 1, 2)]
+    ['0 tets', '1 tet', '2 tets']
+    """
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+
+
 def unknown(kind: str, given: object, known: Iterable[Any], of: str) -> str:
     """The sentence for a name that is not there, with the nearest that is.
 

@@ -311,7 +311,8 @@ public:
                         static_cast<std::size_t>(bezsoma::entities_of_tet(pressure_degree)),
                 "the pressure's first must have a row a tet and a column for each entity");
         require(numbered_by_walk(pressure_degree, first) > 0,
-                "the pressure must be numbered as the walk over the tets first touches it");
+                "the pressure's first numbers its controls in another order than that in which the "
+                "walk first meets them; give net.walked() of a net on the same mesh");
         team_.watch(listen_to_signals);
         nb::gil_scoped_release released;
         operator_ = std::make_unique<bezsoma::MixedOperator>(

@@ -83,7 +83,9 @@ struct Walk {
         require(degree >= 1 && degree <= 10, "degree must be 1 to 10");
         require(best_kernels().f64[degree - 1].apply != nullptr,
                 "this build of the core lacks the kernels of that degree");
-        require(first.is_valid(), "this walk is used up by the preconditioner that it made");
+        require(first.is_valid(),
+                "this walk has given its numbering to the preconditioner that was made of it; make "
+                "another walk of the same tets");
         require(first.shape(1) == static_cast<std::size_t>(entities_of_tet(degree)),
                 "first must have a column for each entity that holds controls");
         const std::size_t tets = corners.shape(0);
@@ -94,7 +96,8 @@ struct Walk {
                     within(region, lame.shape(0)),
                 "order, corners and region must number tets, points and rows of lame");
         require(numbered_by_walk(degree, first) > 0,
-                "controls must be numbered as the walk over the tets first touches them");
+                "first numbers the controls in another order than that in which the walk first "
+                "meets them; give first and order of one net (net.walked(), net.morton)");
         return {degree,
                 static_cast<std::int64_t>(tets),
                 first.data(),

@@ -5,6 +5,8 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <string>
+
 #include "simplex.hpp"
 #include "vertex_matrix.hpp"
 
@@ -19,12 +21,21 @@ Inverse::Inverse(Walk &walk, const std::optional<Corners> &corners, const Suppor
     require(corners
                 ? corners->shape(0) == walk.corners.shape(0) && within(*corners, points.shape(0))
                 : tets.degree == 1,
-            "corners must number the vertices of the walk's tets; none are at degree 1 alone");
+            ("corners of " + std::to_string(corners ? corners->shape(0) : 0) +
+             " tets do not fit a walk over " + std::to_string(walk.corners.shape(0)) +
+             " tets and " + std::to_string(vertices) +
+             " vertices: a row for each tet has to number its four from 0; at degree 1 alone there "
+             "may be none")
+                .c_str());
     require(fixed.shape(0) == static_cast<std::size_t>(controls) &&
                 held_vertices.shape(0) == points.shape(0) &&
                 (corners || fixed.shape(0) == points.shape(0)) &&
                 numbered_by_walk(tets.degree, walk.first) == controls,
-            "held and held_vertices must fit the walk's controls and vertices");
+            ("held of " + std::to_string(fixed.shape(0)) + " controls and held_vertices of " +
+             std::to_string(held_vertices.shape(0)) + " vertices do not fit a walk over " +
+             std::to_string(controls) + " controls and " + std::to_string(vertices) +
+             " vertices: a row (3,) for each is needed, alike at degree 1 where they are the same")
+                .c_str());
     held.assign(fixed.data(), fixed.data() + fixed.size());
     const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
                                                 held_vertices.data() + held_vertices.size());

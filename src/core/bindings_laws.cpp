@@ -238,7 +238,8 @@ private:
                     first.shape(1) == static_cast<std::size_t>(entities_of_tet(degree)),
                 "the pressure's first must have a row a tet and a column for each entity");
         require(numbered_by_walk(degree, first) > 0,
-                "the pressure must be numbered as the walk over the tets first touches it");
+                "the pressure's first numbers its controls in another order than that in which the "
+                "walk first meets them; give net.walked() of a net on the same mesh");
     }
 
     PointwiseOperator<double> &laws() {

@@ -183,7 +183,7 @@ VALUES: dict[str, tuple[Given, tuple[str, ...]]] = {
     ),
     "a value that is not finite": (
         lambda: Traction("top", value=(0, float("nan"), 0)),
-        ("traction on 'top'", "nan", "must be finite"),
+        ("traction on 'top' (MPa) is", "nan", "must be finite"),
     ),
     "a matrix of the wrong shape": (
         lambda: Polynomial.affine(np.eye(2)),
@@ -209,7 +209,7 @@ SUPPORTS: dict[str, tuple[Given, tuple[str, ...]]] = {
     ),
     "a translation in the plane": (
         lambda: Moved("jaw", translation=(0, -5)),
-        ("translation of Moved, mm", "(0, -5)", "3 numbers"),
+        ("translation of Moved (mm)", "(0, -5)", "3 numbers"),
     ),
     "an axis that points nowhere": (
         lambda: Moved("jaw", axis=(0, 0, 0), angle=0.1, about=(0, 0, 0)),
@@ -293,11 +293,11 @@ JOINS: dict[str, tuple[Given, tuple[str, ...]]] = {
     ),
     "a band of no width": (
         lambda: Graded("rami", "jaw", 0),
-        ("band of Graded, mm, is 0", "above zero"),
+        ("band of Graded (mm) is 0", "above zero"),
     ),
     "a gap of negative width": (
         lambda: Gap("rami", "jaw", -2),
-        ("width of Gap, mm, is -2", "above zero"),
+        ("width of Gap (mm) is -2", "above zero"),
     ),
     "a band as text": (lambda: Graded("rami", "jaw", "5 mm"), ("'5 mm'", "one number")),  # type: ignore[arg-type]
     "a join of a place that is not there": (

@@ -133,7 +133,7 @@ SERIES: dict[str, tuple[Callable[[], list[dicom.Slice]], list[str]]] = {
         ["1 of 14 slices", "another direction"],
     ),
     "a missing slice": (without_one, ["missing", "after slice 5", "8 mm", "interpolate = true"]),
-    "two pictures of a place": (far_double, ["1 slices lie where another", "acquisitions"]),
+    "two pictures of a place": (far_double, ["lie at one place (1 such place)", "acquisitions"]),
     "too few": (lambda: dicom.stack(dicom.pattern(5)), ["5 slices", "at least 8"]),
     "another size": (
         lambda: one_changed(2, stored=np.zeros((20, 28))),
@@ -142,7 +142,10 @@ SERIES: dict[str, tuple[Callable[[], list[dicom.Slice]], list[str]]] = {
     "another spacing": (lambda: one_changed(2, spacing=(3, 2.5)), ["different size", "3\\2.5"]),
     "no air": (lambda: dicom.stack(np.abs(dicom.pattern())), ["no air", "hounsfield="]),
     "a shear of metres": (lambda: dicom.stack(dicom.pattern(), shear=300), ["3900 mm beside"]),
-    "no spacing": (lambda: one_spaced(0), ["all three must be positive"]),
+    "no spacing": (
+        lambda: one_spaced(0),
+        ["all three must be positive", "export the picture again"],
+    ),
     "next to none, sheared": (lambda: sheared_and_spaced(1e-9), ["mm beside each other"]),
     "far too fine": (lambda: one_spaced(0.01), ["too thin", "mm"]),
 }

@@ -65,7 +65,7 @@ ARCHIVES: dict[str, tuple[Callable[[Path], Path], list[str]]] = {
     ),
     "tet tags too long": (
         lambda p: archive(p, tet_tags=np.array([1, 2])),
-        ["tet_tags", "(2,)", "1 tets"],
+        ["tet_tags", "(2,)", "for 1 tet whole numbers"],
     ),
     "owner out of range": (
         lambda p: archive(p, facet_tet=np.array([0, 1])),

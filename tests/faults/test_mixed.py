@@ -117,7 +117,7 @@ REFUSED: dict[str, tuple[Given, tuple[str, ...]]] = {
     ),
     "tets without any freedom": (
         lambda: cornered(2),
-        ("1 tets", "nothing is left to determine their pressure", "unlocked(body)"),
+        ("boundary of 1 tet is", "nothing is left to determine the pressure", "unlocked(body)"),
     ),
     "the stress of a displacement at nu = 1/2": (
         lambda: WATER.stress(np.eye(3)),

@@ -15,7 +15,7 @@ from l_block import l_body, l_mesh
 ASKED: dict[str, tuple[dict[str, Any], str]] = {
     "nothing is below": ({"tolerance": 0.0, "at": "right"}, "give more than 0"),
     "negative": ({"tolerance": -0.1, "at": "right"}, "give more than 0"),
-    "no number": ({"tolerance": "0.1 mm", "at": "right"}, "tolerance, mm"),
+    "no number": ({"tolerance": "0.1 mm", "at": "right"}, r"tolerance \(mm\)"),
     "of what": ({"tolerance": 0.1}, "of what\\? Name where: at='skin'"),
     "unknown surface": ({"tolerance": 0.1, "at": "rihgt"}, "did you mean 'right'"),
     "unknown surface of a goal": (

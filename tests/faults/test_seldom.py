@@ -103,6 +103,10 @@ PLACES: dict[str, tuple[Given, tuple[str, ...]]] = {
         lambda at: tags_named("skin=1, jaw", "--surfaces"),
         ("--surfaces", "jaw' is no name with a tag", "write skin=1,jaw=3"),
     ),
+    "a region without a number": (
+        lambda at: tags_named("fat", "--regions"),
+        ("--regions", "'fat' is no name with a tag", "write fat=1,muscle=2"),
+    ),
     "a tag named twice": (
         lambda at: tags_named("skin=1,skin=3", "--regions"),
         ("--regions", "'skin' is named twice", "a name of its own"),
@@ -154,7 +158,7 @@ PICTURES: dict[str, tuple[Given, tuple[str, ...]]] = {
     ),
     "no graph": (
         lambda at: graph_picture(at / "a.png", [], columns=1),
-        ("needs a graph, and one column or more",),
+        ("0 graphs in rows of 1", "one graph or more"),
     ),
     "no shot": (
         lambda at: side_by_side(at / "a.png", []),
@@ -162,7 +166,7 @@ PICTURES: dict[str, tuple[Given, tuple[str, ...]]] = {
     ),
     "no plate": (
         lambda at: plates_picture(at / "a.png", [], {}),
-        ("needs plates, all of one size",),
+        ("no plates were given", "one or more"),
     ),
     "a map of colours too dark": (
         lambda at: colours("gray", darkest=1.1),
@@ -215,7 +219,7 @@ IMAGES: dict[str, tuple[Given, tuple[str, ...]]] = {
     "inches": (landmarks(coordinateUnits="in"), ("coordinateUnits is 'in'", "mm is needed")),
     "a point of two numbers": (
         landmarks(position=[1, 2]),
-        ("landmark 'chin' has no position of three finite numbers",),
+        ("landmark 'chin' has the position", "three finite numbers", "take it out"),
     ),
     "squares for triangles": (
         surface(TRIANGLE, [[0, 1, 2, 2]]),

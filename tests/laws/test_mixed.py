@@ -167,7 +167,7 @@ def test_undetermined_pressures_are_found_in_groups_of_tets(
     work = coupling(net, pressures).toarray()[:, ~held.ravel()]
     open_ones = pressures.count - np.linalg.matrix_rank(work, tol=1e-9) - len(modes)
     if open_ones:
-        with pytest.raises(bz.InputError, match="nothing is left to determine their pressure"):
+        with pytest.raises(bz.InputError, match="nothing is left to determine the pressure"):
             locked.refuse_undetermined(net, pressures, held, soft, modes)
     else:
         assert locked.refuse_undetermined(net, pressures, held, soft, modes) >= 0

@@ -179,7 +179,7 @@ def test_what_does_not_fit_is_refused() -> None:
     shuffled = np.asarray(ControlNet(mesh, 1).starts[0][mesh.tets[::-1]], dtype=np.int32)
     from bezsoma.equations.matrix_free import walk
 
-    with pytest.raises(ValueError, match="numbered as the walk"):
+    with pytest.raises(ValueError, match="in another order than that in which"):
         _core.MixedFree(walk(net, MODULI[:1]), 1, np.ascontiguousarray(shuffled))
 
 

@@ -21,7 +21,7 @@ from bezsoma.case.reading import Case, read_case
 from bezsoma.case.refining import solved, with_tolerance
 from bezsoma.case.sources import mesh_of
 from bezsoma.case.writing import write_results
-from bezsoma.errors import InputError
+from bezsoma.errors import InputError, counted
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.nouns import described, path_given
 from bezsoma.mesh.tets import TetMesh
@@ -201,8 +201,8 @@ def advice(solution: Solution) -> Iterator[str]:
         yield solution.advice
     if solution.held_tets:
         yield (
-            f"all four vertices of {solution.held_tets} tets are prescribed, and what can move "
-            "there is stiffened by its pressure; split_held_tets = true cuts them in four"
+            f"all four vertices of {counted(solution.held_tets, 'tet')} are prescribed, and what "
+            "can move there is stiffened by its pressure; split_held_tets = true cuts in four there"
         )
 
 

@@ -21,7 +21,7 @@ from scipy.sparse.linalg import eigsh
 from bezsoma.arrays import Bools, Floats, Ints
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.mixed import coupling
-from bezsoma.errors import InputError
+from bezsoma.errors import InputError, counted
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.split import split
@@ -79,10 +79,10 @@ def refuse_undetermined(
         if _is_short(work, expected):
             centre = net.mesh.points[net.mesh.tets[group]].mean(axis=(0, 1)).round(3).tolist()
             raise InputError(
-                f"{len(group)} tets have so much of their boundary prescribed that nothing is left "
-                f"to determine their pressure at nu = 1/2, around {centre} mm; cut them in four "
-                "first: solve(unlocked(body)), or on a mesh split(mesh, tets), or in a case file "
-                "split_held_tets = true"
+                f"so much of the boundary of {counted(len(group), 'tet')} is prescribed that "
+                "nothing is left to determine the pressure there at nu = 1/2, around "
+                f"{centre} mm; cut in four there first: solve(unlocked(body)), or on a mesh "
+                "split(mesh, tets), or in a case file split_held_tets = true"
             )
     return len(tets)
 

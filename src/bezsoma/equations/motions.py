@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezsoma.arrays import Floats, Ints
+from bezsoma.errors import counted
 from bezsoma.mesh.tets import TetMesh
 
 SMALL = 1e-6
@@ -47,7 +48,7 @@ def sentence(left: Sequence[Motions], parts: int, hinged: bool = False) -> str:
 def _subject(motions: Motions, parts: int) -> str:
     if parts == 1:
         return "the body"
-    tets = "1 tet" if motions.tets == 1 else f"{motions.tets} tets"
+    tets = counted(motions.tets, "tet")
     return f"part {motions.part + 1} ({tets}, around {_point(motions.centre, motions)} mm)"
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from scipy import ndimage
 
 from bezsoma.arrays import Floats
-from bezsoma.errors import InputError, unknown
+from bezsoma.errors import InputError, counted, unknown
 from bezsoma.imaging.child import Child
 from bezsoma.imaging.volume import Frame, Grid, Volume
 
@@ -94,7 +94,7 @@ def _unreadable(folder: Path, damaged: Sequence[Path], count: int) -> InputError
     names = [str(path.relative_to(folder)) for path in damaged]
     listed = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
     return InputError(
-        f"{folder}: {len(damaged)} of its {count} files are damaged or cut short slices of a CT "
+        f"{folder}: damaged or cut short slices of a CT are {len(damaged)} of its {count} files "
         f"({listed[:300]}), so a part of the head may be missing; copy the series again, or move "
         "these files out of the folder if they do not matter"
     )
@@ -213,8 +213,9 @@ def _ordered(images: list[Mapping[str, Any]]) -> tuple[list[Mapping[str, Any]], 
     off = np.abs(turns - np.median(turns, axis=0)).max(axis=1) > TURNED
     if off.any():
         raise InputError(
-            f"{int(off.sum())} of {len(images)} slices lie in another direction than the rest (a "
-            "topogram, or a reformatted view); keep slices of one direction in a folder"
+            f"{int(off.sum())} of {len(images)} slices {'lie' if off.sum() > 1 else 'lies'} in "
+            "another direction than the rest (a topogram, or a reformatted view); keep slices of "
+            "one direction in a folder"
         )
     sizes = Counter((h["rows"], h["columns"], h["spacing"]) for h in images)
     if len(sizes) > 1:
@@ -262,27 +263,29 @@ def _without_doubles(
     differ = [k for k in double if not np.array_equal(values[k], values[k - 1])]
     if differ:
         raise InputError(
-            f"{len(differ)} slices lie where another one lies and show something else: two "
-            "acquisitions or reconstructions in one series; keep one of them in the folder"
+            "slices that show different things lie at one place "
+            f"({counted(len(differ), 'such place')}): two acquisitions or reconstructions in one "
+            "series; keep one of them in the folder"
         )
     if len(double):
-        notes.append(f"{len(double)} slices were there twice; one of each was taken")
+        notes.append(f"{counted(len(double), 'slice')} there twice; one of each was taken")
     keep = np.setdiff1d(np.arange(len(places)), double)
     return values[keep], places[keep]
 
 
 def _check_gaps(gaps: Floats, step: float, interpolate: bool, notes: list[str]) -> None:
     wide = gaps > MISSING * step
+    found = counted(int(wide.sum()), "gap")
     if wide.any() and not interpolate:
         first = int(np.flatnonzero(wide)[0])
         raise InputError(
             f"slices are missing: after slice {first + 1} the next one follows at "
-            f"{gaps[first]:.4g} mm, elsewhere at {step:.4g} mm ({int(wide.sum())} such gaps); copy "
-            "the series again, or have them filled between neighbours: interpolate = true in "
-            "[model] of the settings, interpolate=True in Python"
+            f"{gaps[first]:.4g} mm, elsewhere at {step:.4g} mm ({found} like this); copy the "
+            "series again, or have them filled between neighbours: interpolate = true in [model] "
+            "of the settings, interpolate=True in Python"
         )
     if wide.any():
-        notes.append(f"{int(wide.sum())} gaps of up to {gaps.max():.4g} mm were interpolated")
+        notes.append(f"{found} interpolated, of up to {gaps.max():.4g} mm")
     elif np.abs(gaps / step - 1).max() > EVEN:
         notes.append(
             f"slices lie {gaps.min():.4g} to {gaps.max():.4g} mm apart; resampled to {step:.4g} mm"

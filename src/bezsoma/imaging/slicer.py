@@ -91,7 +91,10 @@ def _position(path: object, label: str, given: Any) -> Floats:
     except (TypeError, ValueError):
         point = np.empty(0)
     if point.shape != (3,) or not np.isfinite(point).all():
-        raise InputError(f"{path}: landmark {label!r} has no position of three finite numbers")
+        raise InputError(
+            f"{path}: landmark {label!r} has the position {str(given)[:60]}; three finite numbers "
+            "are needed (mm): place it anew, or take it out of the file"
+        )
     return point
 
 

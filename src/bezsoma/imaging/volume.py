@@ -51,7 +51,10 @@ class Frame:
                 )
             object.__setattr__(self, name, frozen(array))
         if not (self.spacing > 0).all():
-            raise InputError(f"voxels of {self.spacing.tolist()} mm; all three must be positive")
+            raise InputError(
+                f"voxels of {self.spacing.tolist()} mm; all three must be positive: export the "
+                "picture again with its spacing, or write the true one into its header"
+            )
         if np.abs(self.axes.T @ self.axes - np.eye(3)).max() > SQUARE:
             raise InputError(
                 f"the axes of the picture are {self.axes.T.tolist()}: not unit vectors at right "

@@ -181,7 +181,7 @@ class Ogden:
     symmetric: ClassVar[bool] = True
 
     def __init__(self, mu: Sequence[float], alpha: Sequence[float], kappa: float) -> None:
-        moduli, powers = _list(mu, "mu of Ogden, MPa"), _list(alpha, "alpha of Ogden")
+        moduli, powers = _list(mu, "mu of Ogden (MPa)"), _list(alpha, "alpha of Ogden")
         if len(moduli) != len(powers) or not 1 <= len(moduli) <= 6:
             raise InputError(
                 f"Ogden was given {len(moduli)} mu and {len(powers)} alpha; it takes as many of "

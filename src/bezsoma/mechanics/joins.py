@@ -53,7 +53,7 @@ class Graded:
 
     def __post_init__(self) -> None:
         two(self.over, self.to, "Graded")
-        object.__setattr__(self, "band", positive(self.band, "the band of Graded, mm"))
+        object.__setattr__(self, "band", positive(self.band, "the band of Graded (mm)"))
 
     @property
     def places(self) -> tuple[str, str]:
@@ -79,7 +79,7 @@ class Gap:
 
     def __post_init__(self) -> None:
         two(self.free, self.at, "Gap")
-        object.__setattr__(self, "width", positive(self.width, "the width of Gap, mm"))
+        object.__setattr__(self, "width", positive(self.width, "the width of Gap (mm)"))
 
     @property
     def places(self) -> tuple[str, str]:
@@ -101,5 +101,5 @@ def positive(value: float, what: str) -> float:
     """A checked length in mm, above zero."""
     length = number(value, what)
     if not length > 0:
-        raise InputError(f"{what}, is {length:g}; it must be above zero")
+        raise InputError(f"{what} is {length:g}; it must be above zero")
     return length

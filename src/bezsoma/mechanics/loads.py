@@ -38,7 +38,7 @@ class Traction:
 
     def __init__(self, *surfaces: str, value: Value | Given, exactness: int | None = None) -> None:
         object.__setattr__(self, "surfaces", names(surfaces, "Traction"))
-        what = f"the traction on {', '.join(map(repr, surfaces))}, MPa"
+        what = f"the traction on {', '.join(map(repr, surfaces))} (MPa)"
         object.__setattr__(self, "value", given(value, 3, what))
         object.__setattr__(self, "exactness", exactness_checked(exactness, "Traction"))
 
@@ -72,7 +72,7 @@ class Pressure:
         following: bool = False,
     ) -> None:
         object.__setattr__(self, "surfaces", names(surfaces, "Pressure"))
-        what = f"the pressure on {', '.join(map(repr, surfaces))}, MPa"
+        what = f"the pressure on {', '.join(map(repr, surfaces))} (MPa)"
         object.__setattr__(self, "value", given(value, 1, what))
         object.__setattr__(self, "exactness", exactness_checked(exactness, "Pressure"))
         if not isinstance(following, bool):
@@ -110,7 +110,7 @@ class BodyForce:
                 f"regions={regions!r} of BodyForce must be a list of names of regions; leave it "
                 "out for all of them"
             )
-        object.__setattr__(self, "value", given(value, 3, "the body force, N/mm3"))
+        object.__setattr__(self, "value", given(value, 3, "the body force (N/mm3)"))
         object.__setattr__(self, "regions", tuple(regions))
         object.__setattr__(self, "exactness", exactness_checked(exactness, "BodyForce"))
 
@@ -131,9 +131,9 @@ class PointForce:
 
     def __init__(self, at: Any, force: Any) -> None:
         if not isinstance(at, str):
-            at = numbers(at, (3,), "the point of PointForce, mm")
+            at = numbers(at, (3,), "the point of PointForce (mm)")
         object.__setattr__(self, "at", at)
-        object.__setattr__(self, "force", numbers(force, (3,), "the force of PointForce, N"))
+        object.__setattr__(self, "force", numbers(force, (3,), "the force of PointForce (N)"))
 
 
 Load = Traction | Pressure | BodyForce | PointForce

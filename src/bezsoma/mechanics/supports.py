@@ -111,9 +111,9 @@ class Moved:
             "places": names(places, "Moved"),
             "components": axes(components, "Moved"),
             "angle": radians(stated.get("angle", 0.0)),
-            "translation": _triple(stated, "translation", (0, 0, 0), "of Moved, mm"),
+            "translation": _triple(stated, "translation", (0, 0, 0), "of Moved (mm)"),
             "axis": _triple(stated, "axis", (0, 0, 1), "of Moved"),
-            "about": _triple(stated, "about", (0, 0, 0), "of Moved, a point in mm,"),
+            "about": _triple(stated, "about", (0, 0, 0), "of Moved (mm)"),
         }
         _motion_stated(own["places"], own["angle"], stated)
         own["_minus_identity"] = rotation_minus_identity(own["axis"], own["angle"])
@@ -157,7 +157,7 @@ class Prescribed:
 
     def __init__(self, *places: str, value: Value | Given, components: str = "xyz") -> None:
         object.__setattr__(self, "places", names(places, "Prescribed"))
-        what = f"the displacement prescribed on {', '.join(map(repr, places))}, mm"
+        what = f"the displacement prescribed on {', '.join(map(repr, places))} (mm)"
         object.__setattr__(self, "value", given(value, 3, what))
         object.__setattr__(self, "components", axes(components, "Prescribed"))
 
@@ -218,7 +218,7 @@ def axes(components: Any, of: str) -> str:
 
 def radians(angle: Any) -> float:
     """The checked angle of a rotation, at most one full turn either way."""
-    turn = number(angle, "the angle of Moved, rad")
+    turn = number(angle, "the angle of Moved (rad)")
     if abs(turn) > 2 * np.pi:
         raise InputError(
             f"the angle of Moved is {turn:g} rad, more than a full turn; angles are radians: "

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from bezsoma import _core
 from bezsoma.arrays import Floats, Int32s, Ints, Numbers
-from bezsoma.errors import MeshError
+from bezsoma.errors import MeshError, counted
 from bezsoma.mesh.shape import FLAT, LARGEST, Signs, flat_tets, heights_and_lengths
 
 
@@ -101,8 +101,8 @@ def index_array(given: npt.ArrayLike, count: int, what: str, of: str) -> Ints:
         value = array[outside][0]
         one = " (numbers start at 0, not at 1)" if value == count else ""
         raise MeshError(
-            f"{what} name {of} {value} (in row {listed(rows)}), but there are {count} "
-            f"{_plural(of)}, numbered 0 to {count - 1}{one}"
+            f"{what} name {of} {value} (in row {listed(rows)}), but the "
+            f"{_plural(of)} are numbered 0 to {count - 1}{one}"
         )
     return np.array(array, dtype=np.int64, order="C")
 
@@ -129,7 +129,7 @@ def region_array(given: npt.ArrayLike | None, tets: int, names: tuple[str, ...])
     array = _array(given, "region")
     if array.shape != (tets,):
         raise MeshError(
-            f"region has the shape {array.shape}, but there are {tets} tets; "
+            f"region has the shape {array.shape}, but the mesh has {counted(tets, 'tet')}; "
             f"one region number a tet is needed: the shape ({tets},)"
         )
     return index_array(array, len(names), f"region numbers (regions: {list(names)})", "region")
@@ -143,10 +143,11 @@ def shape(points: Floats, tets: Ints) -> Signs:
         worst = tets[bad[0]]
         height, length = heights_and_lengths(points[worst][None])
         raise MeshError(
-            f"{len(bad)} of {len(tets)} tets are flat: tet {listed(bad)}. Tet {bad[0]} (vertices "
-            f"{worst.tolist()}) has the height {height[0]:.3g} mm and a longest edge of "
-            f"{length[0]:.3g} mm, a ratio below {FLAT:g}; a tet needs a volume: collapse or "
-            f"remove it, or mesh again{_coincident(points, worst)}"
+            f"{len(bad)} of {len(tets)} tets {'is' if len(bad) == 1 else 'are'} flat: tet "
+            f"{listed(bad)}. Tet {bad[0]} (vertices {worst.tolist()}) has the height "
+            f"{height[0]:.3g} mm and a longest edge of {length[0]:.3g} mm, a ratio below {FLAT:g}; "
+            "a tet needs a volume: collapse or remove it, or mesh again"
+            + _coincident(points, worst)
         )
     return signs
 

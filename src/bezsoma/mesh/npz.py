@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from bezsoma.arrays import Ints, Numbers
-from bezsoma.errors import InputError, MeshError
+from bezsoma.errors import InputError, MeshError, counted
 from bezsoma.mesh.checks import index_rows, listed, point_array, tet_array
 from bezsoma.mesh.tagged import NO_FACETS, Cells, Listing, mesh_of
 from bezsoma.mesh.tets import TetMesh
@@ -112,7 +112,7 @@ def _array(arrays: Mapping[str, Numbers], name: str) -> Numbers:
 def _plain(arrays: Mapping[str, Numbers]) -> Listing:
     points = point_array(_array(arrays, "points"))
     rows = tet_array(_array(arrays, "tets"), len(points))
-    tags = _tags(arrays, "tet_tags", "tets", len(rows)) if "tet_tags" in arrays else None
+    tags = _tags(arrays, "tet_tags", "tet", len(rows)) if "tet_tags" in arrays else None
     return Listing(points, Cells(rows, tags), _facets(arrays, rows, len(points)))
 
 
@@ -124,7 +124,7 @@ def _facets(arrays: Mapping[str, Numbers], tets: Ints, count: int) -> Cells:
         return NO_FACETS
     if "facet_tet" in arrays:
         _owned(facets, tets, arrays["facet_tet"])
-    return Cells(facets, _tags(arrays, "facet_tags", "facets", len(facets)))
+    return Cells(facets, _tags(arrays, "facet_tags", "facet", len(facets)))
 
 
 def _owned(facets: Ints, tets: Ints, owner: Numbers) -> None:
@@ -150,8 +150,8 @@ def _tags(arrays: Mapping[str, Numbers], name: str, of: str, count: int) -> Ints
     tags = arrays[name]
     if tags.shape != (count,) or tags.dtype.kind not in "iu":
         raise MeshError(
-            f"{name} has the shape {tags.shape} and type {tags.dtype}; there are {count} {of}, "
-            f"so whole numbers of the shape ({count},) are needed"
+            f"{name} has the shape {tags.shape} and type {tags.dtype}; for "
+            f"{counted(count, of)} whole numbers of the shape ({count},) are needed"
         )
     return tags.astype(np.int64)
 

@@ -45,7 +45,7 @@ class PatchMean:
 
     def __init__(self, surface: str, *, at: Any, radius: Any, direction: Any) -> None:
         object.__setattr__(self, "surface", surface)
-        object.__setattr__(self, "at", numbers(at, (3,), "the middle of PatchMean, mm"))
+        object.__setattr__(self, "at", numbers(at, (3,), "the middle of PatchMean (mm)"))
         object.__setattr__(self, "radius", _radius(radius, "PatchMean"))
         object.__setattr__(self, "direction", unit(direction, "PatchMean"))
 
@@ -82,7 +82,7 @@ class InnerMean:
     direction: Floats
 
     def __init__(self, *, at: Any, radius: Any, direction: Any) -> None:
-        object.__setattr__(self, "at", numbers(at, (3,), "the middle of InnerMean, mm"))
+        object.__setattr__(self, "at", numbers(at, (3,), "the middle of InnerMean (mm)"))
         object.__setattr__(self, "radius", _radius(radius, "InnerMean"))
         object.__setattr__(self, "direction", unit(direction, "InnerMean"))
 
@@ -126,7 +126,7 @@ def unit(direction: Any, of: str) -> Floats:
 
 
 def _radius(radius: Any, of: str) -> float:
-    length = number(radius, f"the radius of {of}, mm")
+    length = number(radius, f"the radius of {of} (mm)")
     if length <= 0:
         raise InputError(f"the radius of {of} is {length:g} mm, and it has to be above 0: {POINT}")
     return length

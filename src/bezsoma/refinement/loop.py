@@ -130,7 +130,7 @@ def _wish(
             "surface), or at=PatchMean('skin', at=(x, y, z), radius=3, direction='y')"
         )
     return _Wish(
-        _positive(tolerance, "tolerance, mm"),
+        _positive(tolerance, "tolerance (mm)"),
         _positive(energy, "energy, the relative error in the energy norm"),
         found,
         by,

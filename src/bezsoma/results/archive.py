@@ -180,7 +180,10 @@ def _continuous(
     path: Path, mesh: TetMesh, shape: tuple[int, ...], degree: Any, controls: Floats, of_tet: Ints
 ) -> Field:
     """A continuous field with values of a shape, renumbered where need be."""
-    net = ControlNet(mesh, int(degree))
+    try:
+        net = ControlNet(mesh, int(degree))
+    except InputError as error:
+        raise InputError(f"{str(path)!r} is damaged ({error}); run the case again") from None
     numbered = np.array_equal(np.unique(of_tet), np.arange(net.count))
     if not numbered or of_tet.shape != net.of_tet.shape or controls.shape != (net.count, *shape):
         raise InputError(

@@ -27,6 +27,7 @@ FORMAT = "bezsoma results 1"
 REASONS = {
     errno.ENOSPC: "no space is left on that disk; free some, or choose another folder with -o",
     errno.EDQUOT: "your quota on that disk is used up; free some, or choose another folder with -o",
+    errno.EIO: "that disk does not take it (input/output error); choose another folder with -o",
     errno.EROFS: "that disk is read-only; choose another folder with -o",
     errno.EACCES: "you may not write there; choose another folder with -o",
     errno.EPERM: "you may not write there; choose another folder with -o",
@@ -156,7 +157,8 @@ def written(folder: Path) -> Iterator[None]:
 
 
 def _reason(number: int) -> str:
-    return REASONS.get(number, os.strerror(number))
+    told = f"the system says {os.strerror(number)!r}; try again, or choose another folder with -o"
+    return REASONS.get(number, told)
 
 
 def _umask() -> int:

@@ -20,6 +20,7 @@ from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
 from bezsoma.arrays import Floats
+from bezsoma.errors import InputError
 
 HERE_UP_TO = 3000
 """Rows of a matrix that is factored in a fraction of a second: in this process."""
@@ -46,9 +47,10 @@ def factored(
     >>> solve(np.array([3.0, 2])).tolist()
     [1.0, 1.0]
     """
-    if matrix.shape[0] <= HERE_UP_TO:
+    rows = matrix.shape[0]
+    if rows <= HERE_UP_TO:
         factors = splu(matrix, **options)
-        return lambda b: np.asarray(factors.solve(b), dtype=np.float64)
+        return lambda b: np.asarray(factors.solve(_fitting(b, rows)), dtype=np.float64)
     child = _child()
     try:
         _asked(child, (matrix, options), waiting)
@@ -57,10 +59,19 @@ def factored(
         raise
 
     def solve(b: Floats) -> Floats:
-        return np.asarray(_asked(child, b, None), dtype=np.float64)
+        return np.asarray(_asked(child, _fitting(b, rows), None), dtype=np.float64)
 
     weakref.finalize(solve, _end, child)
     return solve
+
+
+def _fitting(b: Floats, rows: int) -> Floats:
+    if b.shape[:1] != (rows,):
+        raise InputError(
+            f"a right-hand side of the shape {b.shape} was given; the matrix has {rows} rows, so "
+            f"it must be ({rows},)"
+        )
+    return b
 
 
 def _child() -> subprocess.Popen[bytes]:

@@ -163,10 +163,18 @@ def refuse_what_does_not_fit(body: Body, solver: str, linear: bool = True) -> No
         unknowns = 3 * Counts(body.mesh, body.degree).controls
         raise InputError(
             f"{unknowns} unknowns of degree {body.degree} by {chosen!r} take about "
-            f"{needed / 2**30:.1f} GiB, and {there / 2**30:.1f} GiB are free; take a lower degree "
-            "or a coarser mesh"
+            f"{size(needed)}, and {size(there)} are free; take a lower degree or a coarser mesh"
             + ("" if chosen == without else f", or solver={without!r}, which needs no matrix")
         )
+
+
+def size(many: float) -> str:
+    """So many bytes, to be read.
+
+    >>> size(3.5 * 2**30), size(48_300_000), size(500_000)
+    ('3.5 GiB', '48.3 MB', '0.5 MB')
+    """
+    return f"{many / 2**30:.1f} GiB" if many >= 2**30 else f"{many / 1e6:.4g} MB"
 
 
 def _kernel_says() -> int | None:

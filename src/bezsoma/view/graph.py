@@ -30,7 +30,10 @@ def graph_picture(
     b'\x89PNG'
     """
     if not len(shown) or columns < 1:
-        raise InputError("a page of graphs needs a graph, and one column or more")
+        raise InputError(
+            f"{len(shown)} graphs in rows of {columns} cannot be drawn; give one graph or more, "
+            "and columns=1 or more"
+        )
     content = png(graphs(shown, columns, title, size), title)
     if path is not None:
         written(path, content, overwrite)

@@ -55,8 +55,14 @@ def plates_picture(
 
     `legend` gives the colour (red, green, blue from 0 to 1) of every name.
     """
-    if not plates or len({plate.colours.shape for plate in plates}) != 1:
-        raise InputError("a page needs plates, all of one size in pixels")
+    sizes = {plate.colours.shape[:2] for plate in plates}
+    if len(sizes) != 1:
+        found = " and ".join(f"{w} x {h} pixels" for h, w in sorted(sizes))
+        raise InputError(
+            f"plates of {found} were given; make all of one size to stand on one page"
+            if sizes
+            else "no plates were given to draw; give one or more, as plates_picture(path, [plate])"
+        )
     height, width, _ = plates[0].colours.shape
     columns = min(COLUMNS, len(plates))
     rows = ceil(len(plates) / columns)
