@@ -62,12 +62,17 @@ def test_the_laws_of_the_face_give_their_numbers(
 ) -> None:
     monkeypatch.setenv("BEZSOMA_DATA", str(data))
     page = (root / "docs/verification/face_laws.md").read_text(encoding="utf-8")
-    (table,) = experiment("face_laws").measured(quick=True).values()
-    for row in table.rows:
+    tables = experiment("face_laws").measured(quick=True)
+    for row in tables["laws"].rows:
         line = re.search(rf"^\| {row.motion} \| 2 \| {row.law} \|(.+)$", page, re.MULTILINE)
         assert line
         wanted = [float(cell.split()[0]) for cell in line[1].split("|")[:3]]
         assert [row.chin, row.lower_lip, row.cheek] == pytest.approx(wanted, abs=0.006)
+        moves = tables["moves"].where(motion=row.motion, law=row.law)
+        parts = re.findall(r"\(([^)]+)\)", line[1])
+        for move, text in zip(moves, parts, strict=True):
+            components = [float(number) for number in text.split(",")]
+            assert [move.x, move.y, move.z] == pytest.approx(components, abs=0.006)
 
 
 @pytest.mark.parametrize("name", [*ON_PAPER, *ON_A_FACE])
