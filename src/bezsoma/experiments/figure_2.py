@@ -112,10 +112,18 @@ def internal(found: bz.Solution, v: bz.Field) -> float:
     return float(mesh.volumes @ (product.sum(axis=(-1, -2)) @ weights))
 
 
+def finding(tables: Tables) -> str:
+    """What is found."""
+    worst = max(row.apart / abs(row.other) for row in tables["virtual_work"].rows)
+    return (
+        "Such a body of degree 3. What was prescribed is met, forces and reactions balance, and "
+        f"internal and external virtual work agree, all to {worst:.0e} of their size."
+    )
+
+
 def told(tables: Tables) -> Report:
     """The page."""
     found = solution()
-    worst = max(row.apart / abs(row.other) for row in tables["virtual_work"].rows)
     about = "A ball of tissue: its lower cap is moved and held, its side is pulled; colours are mm."
     picture = bz.picture(
         None, found.body.mesh, found.displacement, displacement=found.displacement,
@@ -125,8 +133,7 @@ def told(tables: Tables) -> Report:
         "Figure 2: a general elastic body",
         "A body in a fixed frame, supported on a part of its surface with prescribed "
         "displacements and subjected to forces, which together yield a displacement field.",
-        "Such a body of degree 3. What was prescribed is met, forces and reactions balance, and "
-        f"internal and external virtual work agree, all to {worst:.0e} of their size.",
+        finding(tables),
         "They do not. The paper writes only a force on the volume; surgery and tests need "
         "tractions on surfaces and point forces beside it, which is how this body is loaded.",
         tables,

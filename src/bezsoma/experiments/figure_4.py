@@ -121,17 +121,28 @@ def polynomials() -> bytes:
     return graph_picture(None, shown, columns=3, size=(1200, 480))
 
 
+def finding(tables: Tables) -> str:
+    """What is found."""
+    cubic = tables["nets"].row(degree=3)
+    inside = str(cubic.inside) if cubic.inside else "none"
+    off = max(abs(row.sum_of_polynomials - 1) for row in tables["nets"].rows)
+    least = min(row.least_value for row in tables["nets"].rows)
+    heights = ", ".join(f"{row.polynomial} {row.largest:.4f}" for row in tables["peaks"].rows)
+    return (
+        f"The same for any degree; a cubic tet has {cubic.controls} controls, {cubic.on_a_face} of "
+        f"them on each face, {inside} inside. The polynomials sum to one within {off:.0e} and "
+        f"{'are nowhere negative' if least >= 0 else f'fall to {least:.0e}'}, so a patch stays "
+        f"within the hull of its controls. Largest values: {heights}."
+    )
+
+
 def told(tables: Tables) -> Report:
     """The page."""
-    cubic = tables["nets"].row(degree=3)
-    heights = ", ".join(f"{row.polynomial} {row.largest:.4f}" for row in tables["peaks"].rows)
     return Report(
         "Figure 4: control nets and Bernstein polynomials",
         "Control nets of linear, quadratic and cubic Bezier tets, and three cubic Bernstein "
         "polynomials on a triangle.",
-        f"The same for any degree; a cubic tet has {cubic.controls} controls, {cubic.on_a_face} of "
-        "them on each face, none inside. The polynomials sum to one and are nowhere negative, so "
-        f"a patch stays within the hull of its controls. Largest values: {heights}.",
+        finding(tables),
         "They do not; but the paper calls controls vertices, and of the cubic net only the four "
         "corners lie on the patch, as the drawing shows. A control is not a value at a point, so "
         "data that is given as values has to be converted.",

@@ -120,20 +120,28 @@ def picture() -> bytes:
     return graph_picture(None, shown, size=(1200, 600))
 
 
-def told(tables: Tables) -> Report:
-    """The page."""
+def finding(tables: Tables) -> str:
+    """What is found."""
     worst = max(row.off_the_polynomial for row in tables["levels"].rows)
     two, three = (
         tables["subdivision"].row(dimension=3, subdivisions=k).net_from_patch for k in (2, 3)
     )
+    triangle, tet = (tables["levels"].row(dimension=dim, steps=0).controls for dim in (2, 3))
+    return (
+        f"Three steps of averages lead from {triangle} or {tet} controls to a point of the patch, "
+        f"equal to the sum of the polynomials within {worst:.0e}. Subdivision drives the nets to "
+        f"the patch: the distance falls by {two / three:.1f} from the second to the third halving "
+        "of a tet."
+    )
+
+
+def told(tables: Tables) -> Report:
+    """The page."""
     return Report(
         "Figure 5: de Casteljau's algorithm",
         "The algorithm in two and three dimensions for cubic patches; it serves to draw "
         "surfaces and to subdivide, so as to refine a solution step by step.",
-        "Three steps of averages lead from 10 or 20 controls to a point of the patch, equal to "
-        f"the sum of the polynomials within {worst:.0e}. Subdivision drives the nets to the "
-        f"patch: the distance falls by {two / three:.1f} from the second to the third halving of "
-        "a tet.",
+        finding(tables),
         "They do not. The levels hold more than the paper says: their sides are the nets of the "
         "sub-simplices at the point, and with other arguments in each step (the blossom) the same "
         "averages give elevation, faces, and the pieces of a tet cut in eight.",

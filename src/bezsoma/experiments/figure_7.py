@@ -125,8 +125,8 @@ def pictures() -> dict[str, Picture]:
     return shown
 
 
-def told(tables: Tables) -> Report:
-    """The page."""
+def finding(tables: Tables) -> str:
+    """What is found."""
     middle = {(r.support, r.form, r.nu): r.middle for r in tables["compared"].where(force=1.0)}
     alike, unlike = (
         {
@@ -140,7 +140,7 @@ def told(tables: Tables) -> Report:
     one, two = (
         1 - lock.row(form="displacement", degree=d, nu=0.4999).middle / soft for d in (1, 2)
     )
-    found = (
+    return (
         "Held and pulled at points, as the paper has it, the incompressible block (nu = 1/2) "
         f"yields {said(alike['points'])} in the middle of its top than the compressible one "
         "(nu = 0.25, which the paper leaves open; here as in its figure 6), if both have a "
@@ -151,13 +151,17 @@ def told(tables: Tables) -> Report:
         f"Who locks: at nu = 0.4999 the displacement form of degree 1 yields {said(one)} than "
         f"the mixed form of degree 2 on the same mesh, that of degree 2 {said(two)}."
     )
+
+
+def told(tables: Tables) -> Report:
+    """The page."""
     return Report(
         "Figure 7: compressible and incompressible",
         "The block again, degree 2 with a pressure of degree 1, E = 1, nu = 0.5, forces 1.0 and "
         "2.0. The results are very similar; the incompressible material is somewhat stiffer and "
         "harder to bend. The pressure has to be of a lower degree than the displacement, to "
         "prevent locking.",
-        found,
+        finding(tables),
         "They agree, if like is compared with like. Under a point force every answer belongs to "
         "its mesh and its form: the form with a pressure yields more there, at nu = 0.25 too, "
         "than the one without, by more than nu changes. Where the force is spread, the forms "

@@ -88,8 +88,8 @@ def graph(tables: Tables) -> bytes:
     return graph_picture(None, panels, size=(1200, 540))
 
 
-def told(tables: Tables) -> Report:
-    """The page."""
+def finding(tables: Tables) -> str:
+    """What is found."""
     by = tables["laws"]
     straight = by.row(support="squares", law="linear", force=20.0).largest
     less = {
@@ -102,18 +102,22 @@ def told(tables: Tables) -> Report:
     unborne = "".join(
         f" {r.law} ({r.support}) bore {100 * r.borne:.0f} % of {r.force:g} N." for r in shortfall
     )
-    found = (
+    return (
         "The linear block gives way in proportion; every reading of the strain bends the curve "
         "down, as the paper says. By how much depends on the reading more than on anything "
         "else: under 20 N on squares the largest displacement is smaller than the linear one by "
         f"{listed}.{unborne}"
     )
+
+
+def told(tables: Tables) -> Report:
+    """The page."""
     return Report(
         "Figure 8: linear and stiffening",
         "A block under 0.5, 1.0, 1.5 and 2.0, degree 2, nu = 0.25, E = E0 exp(A eps^2) with A = "
         "5: the linear one shows the linear relation of force and displacement, the other "
         "stiffens.",
-        found,
+        finding(tables),
         "The paper offers two norms of the strain and prints engineering shears in a tensor; so "
         "there are four readings, and its curves do not say which was drawn. With engineering "
         "shears the law depends on the frame. The mean is at most a third of the Frobenius "

@@ -103,25 +103,29 @@ def graph(tables: Tables) -> bytes:
     return graph_picture(None, panels, size=(1320, 560))
 
 
-def told(tables: Tables) -> Report:
-    """The page."""
+def finding(tables: Tables) -> str:
+    """What is found."""
     table = tables["locking"]
 
     def lacks(form: str, degree: int, nu: float) -> str:
         return f"{100 * table.row(form=form, degree=degree, nu=nu).deficit:.2g} %"
 
-    found = (
+    return (
         "At nu = 0.4999 the displacement form of degree 1 misses "
         f"{lacks('displacement', 1, 0.4999)} of the work of the load, of degree 2 "
         f"{lacks('displacement', 2, 0.4999)}, of degree 4 {lacks('displacement', 4, 0.4999)}; "
         f"the mixed form of degree 2 {lacks('mixed', 2, 0.4999)}, and at nu = 1/2 "
         f"{lacks('mixed', 2, 0.5)}."
     )
+
+
+def told(tables: Tables) -> Report:
+    """The page."""
     return Report(
         "Who locks as nu goes to 1/2",
         "A result of the theory of finite elements: in order to prevent locking, the pressure "
         "has to be interpolated with a lower degree than the displacement.",
-        found,
+        finding(tables),
         "They agree, with one addition: the displacement form of a high degree hardly locks. "
         "What to take when is discussed in docs/theory/incompressible.md.",
         tables,

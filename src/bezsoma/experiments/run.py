@@ -39,6 +39,9 @@ class Experiment(Protocol):
     def measured(self, quick: bool = False) -> Tables:
         """The numbers; when quick, some of the rows."""
 
+    def finding(self, tables: Tables) -> str:
+        """What is found, in words that follow from the full numbers alone."""
+
     def told(self, tables: Tables) -> Report:
         """The page and the pictures, from the full numbers."""
 
