@@ -17,6 +17,8 @@ from bezsoma.mesh import broken_field
 FORCES = (1.0, 2.0)
 COMPRESSIBLE, INCOMPRESSIBLE = 0.25, 0.5
 MATERIALS = (("displacement", COMPRESSIBLE), ("mixed", COMPRESSIBLE), ("mixed", INCOMPRESSIBLE))
+HUES = "gist_rainbow_r"
+"""From magenta over blue, green and yellow to red."""
 NUS = (0.25, 0.45, 0.49, 0.499, 0.4999, 0.5)
 
 
@@ -107,7 +109,7 @@ def locking(nu: float) -> list[Locked]:
 
 
 def pictures() -> dict[str, Picture]:
-    """Displacement and pressure of both, coloured: yellow is most, where the paper has red."""
+    """Displacement and pressure of both, in the paper's colours: red is most, magenta least."""
     shown = {}
     for nu, name in {COMPRESSIBLE: "compressible", INCOMPRESSIBLE: "incompressible"}.items():
         found = solved("points", nu)
@@ -119,8 +121,12 @@ def pictures() -> dict[str, Picture]:
             image = bz.picture(
                 None, found.body.mesh, field, displacement=found.displacement, magnified=0.5,
                 label=f"{what} under 1 N, {unit}", size=(760, 800), title=name,
+                table=HUES,
             )  # fmt: skip
-            about = f"{what.capitalize()} of the {name} block, corners held, nu = {nu:g}."
+            about = (
+                f"{what.capitalize()} of the {name} block, corners held, nu = {nu:g}; red is most, "
+                "magenta least."
+            )
             shown[f"{name}_{what}"] = Picture(image, about)
     return shown
 
@@ -160,7 +166,8 @@ def told(tables: Tables) -> Report:
         "The block again, degree 2 with a pressure of degree 1, E = 1, nu = 0.5, forces 1.0 and "
         "2.0. The results are very similar; the incompressible material is somewhat stiffer and "
         "harder to bend. The pressure has to be of a lower degree than the displacement, to "
-        "prevent locking.",
+        "prevent locking. Displacement and pressure are drawn in colours: red for the largest "
+        "displacement, magenta for the least pressure.",
         finding(tables),
         "They agree, if like is compared with like. Under a point force every answer belongs to "
         "its mesh and its form: the form with a pressure yields more there, at nu = 0.25 too, "
@@ -170,7 +177,8 @@ def told(tables: Tables) -> Report:
         "(docs/theory/errata.md). A lower degree of the pressure is necessary and not "
         "sufficient: it must be continuous, and the displacement at least of degree 2. The "
         "pressures at the point and at the corners are as little defined as the displacement "
-        "there; they are printed for this mesh only.",
+        "there; they are printed for this mesh only. The colours are the paper's; they make edges "
+        'where there are none (`table="viridis"`, which all other pictures have, makes none).',
         tables,
         pictures(),
     )
