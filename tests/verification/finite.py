@@ -135,10 +135,10 @@ def sphere() -> Iterator[Value]:
 
 
 def beam() -> Iterator[Value]:
-    """On 20 x 2 x 2 cells; at degree 2 it is still too stiff."""
+    """On 20 x 2 x 2 cells; on these degree 2 is still too stiff, and has a tolerance of its own."""
     for degree, within in ((2, 0.03), (3, 0.02), (4, 0.02)):
         z, solution = muscle_beam(degree, (20, 2, 2), "multigrid")
-        where = f"degree {degree} and {degree - 1}, 480 tets, {solution.free} unknowns"
+        where = f"degree {degree} and {degree - 1}, 20 x 2 x 2 cells, {solution.free} unknowns"
         yield Value("z of the end's upper edge, mm", where, z, 4.17, within / 4.17)
         yield Value("change of volume, mm3", where, solution.volume_change, 0.0, 1e-9)
 
@@ -286,7 +286,9 @@ FAMILY.add(
     PUBLISHED,
     "S. Land et al., Proc. R. Soc. A 471 (2015), doi:10.1098/rspa.2015.0641, problem 1",
     "z = 4.17 +- 0.02 mm",
-    "where the codes of the paper lie; degree 2 is still too stiff and may be off by 0.03 mm",
+    "0.02 mm is where the codes of the paper lie, and degrees 3 and 4 are held to it. Degree 2 is "
+    "not: on 20 x 2 x 2 cells (480 tets, 3,189 unknowns) it is too stiff, lies outside of that "
+    "band, and is held to a tolerance of its own, 0.03 mm. The table has both relative to 4.17 mm",
     beam,
 )
 FAMILY.add(
