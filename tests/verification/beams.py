@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import bezsoma as bz
+from bezsoma.mechanics.loads import Load
 from bezsoma.mesh import block
 from convergence.test_exact import MESHES
 from convergence.test_patches import hung
@@ -90,16 +91,17 @@ def heavy(length: float) -> Iterator[Value]:
     yield from clamped(length, load, wanted, (3, 4))
 
 
-def clamped(
-    length: float, load: object, wanted: float, degrees: tuple[int, ...]
-) -> Iterator[Value]:
+def clamped_beam(length: float, load: Load, degree: int) -> bz.Body:
+    """A beam clamped at its left."""
+    return bz.Body(beam(length, round(length)), degree, HOOKE, [bz.Fixed("left")], [load])
+
+
+def clamped(length: float, load: Load, wanted: float, degrees: tuple[int, ...]) -> Iterator[Value]:
     """The end of a beam clamped at its left."""
     for degree in degrees:
-        mesh = beam(length, round(length))
-        body = bz.Body(mesh, degree, HOOKE, [bz.Fixed("left")], [load])  # type: ignore[list-item]
-        found = bz.solve(body, solver="direct")
+        found = bz.solve(clamped_beam(length, load, degree), solver="direct")
         at = found.displacement.at(np.array([[length, 0.0, 0.0]]))[0, 2]
-        where = f"degree {degree}, {len(mesh.tets)} tets"
+        where = f"degree {degree}, {len(found.body.mesh.tets)} tets"
         yield Value("end, mm", where, float(at), wanted, 0.16 / length)
 
 

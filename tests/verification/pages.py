@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes docs/verification/problems from what the problems give.
 
-`PYTHONPATH=tests ./dev python -m verification.pages` runs all of them, about two minutes.
+`PYTHONPATH=tests ./dev python -m verification.pages` runs all of them, about two minutes; names of
+families after it, only those.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import sys
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from verification.every import FAMILIES, PROBLEMS
+from verification.pictures import PICTURES
 from verification.problem import EQUAL, KINDS, Family, Problem, Value
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -31,7 +34,8 @@ def row(value: Value) -> str:
 
 
 def section(problem: Problem, values: Iterable[Value]) -> str:
-    """A problem: where it is from, its answer, what was found."""
+    """A problem: where it is from, its answer, a picture if there is one, what was found."""
+    drawn = PICTURES.get(str(problem))
     lines = [
         f"## {problem.name}",
         "",
@@ -39,6 +43,7 @@ def section(problem: Problem, values: Iterable[Value]) -> str:
         f"- **Answer**: `{problem.answer}`",
         f"- **Tolerance**: {problem.why}",
         "",
+        *([f"![{drawn.about}](pictures/{drawn.file})", ""] if drawn else []),
         "| degree and mesh | what | found | wanted | off by | tolerance |",
         "|---|---|---|---|---|---|",
         *map(row, values),
@@ -82,14 +87,16 @@ def contents() -> str:
     )
 
 
-def main() -> None:
-    """Write all pages."""
+def main(chosen: Sequence[str]) -> None:
+    """Write the pages and pictures of the families that are chosen, or of all."""
     folder = ROOT / BOOK
-    folder.mkdir(parents=True, exist_ok=True)
-    for family in FAMILIES:
+    (folder / "pictures").mkdir(parents=True, exist_ok=True)
+    for family in (each for each in FAMILIES if each.name in chosen or not chosen):
         (folder / f"{family.name}.md").write_text(page(family), encoding="utf-8")
+        for drawn in (PICTURES[str(each)] for each in family if str(each) in PICTURES):
+            (folder / "pictures" / drawn.file).write_bytes(drawn.content())
     (folder / "index.md").write_text(contents(), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

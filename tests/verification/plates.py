@@ -39,40 +39,49 @@ def quarter_ellipse(cells: tuple[int, int, int], thickness: float) -> bz.TetMesh
     return bz.TetMesh(moved.points, moved.tets, surfaces=surfaces)
 
 
+PLANES = [bz.Fixed("AB", components="y"), bz.Fixed("CD", components="x")]
+
+
+def membrane(degree: int, cells: tuple[int, int, int]) -> bz.Body:
+    """LE1: 100 mm thick, 10 MPa outwards on the outer edge."""
+    held = [*PLANES, bz.Fixed("bottom", components="z")]
+    loads = [bz.Pressure("outer", value=-10.0)]
+    return bz.Body(quarter_ellipse(cells, 100.0), degree, STEEL, held, loads)
+
+
 def le1() -> Iterator[Value]:
-    """Elliptic membrane, 100 mm thick, 10 MPa outwards on the outer edge: s_yy at D (2, 0)."""
+    """The elliptic membrane: s_yy at D (2, 0)."""
     runs = (
         (2, (8, 16, 1), 0.025),
         (2, (8, 32, 1), 0.01),
         (3, (6, 32, 1), 0.015),
         (4, (4, 32, 1), 0.015),
     )
-    planes = [bz.Fixed("AB", components="y"), bz.Fixed("CD", components="x")]
     for degree, cells, within in runs:
-        mesh = quarter_ellipse(cells, 100.0)
-        held = [*planes, bz.Fixed("bottom", components="z")]
-        body = bz.Body(mesh, degree, STEEL, held, [bz.Pressure("outer", value=-10.0)])
-        yield at_d(body, (2000.0, 0.0, 50.0), 92.7, within)
+        yield at_d(membrane(degree, cells), (2000.0, 0.0, 50.0), 92.7, within)
 
 
-def le10() -> Iterator[Value]:
-    """Thick elliptic plate, 600 mm, 1 MPa on its top: s_yy at D (2, 0) on the top.
+def thick_plate(degree: int, cells: tuple[int, int, int]) -> bz.Body:
+    """LE10: 600 mm thick, 1 MPa on its top.
 
     The outer face is held in x and y, and in z along its middle line.
     """
-    planes = [bz.Fixed("AB", components="y"), bz.Fixed("CD", components="x")]
-    edge = [bz.Fixed("outer", components="xy"), bz.Fixed("line", components="z")]
+    mesh = quarter_ellipse(cells, 600.0)
+    outer = mesh.points[mesh.vertices_of("outer")]
+    line = outer[np.isclose(outer[:, 2], 300.0)]
+    mesh = mesh.with_edges("line", line[np.argsort(line[:, 1])])
+    held = [*PLANES, bz.Fixed("outer", components="xy"), bz.Fixed("line", components="z")]
+    return bz.Body(mesh, degree, STEEL, held, [bz.Pressure("top", value=1.0)])
+
+
+def le10() -> Iterator[Value]:
+    """The thick elliptic plate: s_yy at D (2, 0) on the top."""
     for degree, cells, within in (
         (3, (6, 16, 2), 0.05),
         (3, (6, 32, 2), 0.03),
         (4, (4, 32, 2), 0.02),
     ):
-        mesh = quarter_ellipse(cells, 600.0)
-        outer = mesh.points[mesh.vertices_of("outer")]
-        line = outer[np.isclose(outer[:, 2], 300.0)]
-        mesh = mesh.with_edges("line", line[np.argsort(line[:, 1])])
-        body = bz.Body(mesh, degree, STEEL, [*planes, *edge], [bz.Pressure("top", value=1.0)])
-        yield at_d(body, (2000.0, 0.0, 600.0), -5.38, within)
+        yield at_d(thick_plate(degree, cells), (2000.0, 0.0, 600.0), -5.38, within)
 
 
 def at_d(body: bz.Body, point: tuple[float, float, float], wanted: float, within: float) -> Value:

@@ -99,15 +99,21 @@ def profile(x: Floats, t: float, low: float, high: float) -> Floats:
     return u
 
 
-def two_metals(contrast: float) -> Iterator[Value]:
-    """A beam of two layers of the same nu bent by a moment: plane sections, one neutral axis."""
-    length, c = 6.0, 0.001
-    mesh = block((length, 1.0, 1.0), (4, 1, 2), origin=(0, -0.5, 0))
+LENGTH, BEND = 6.0, 0.001
+"""Of the beam of two layers, mm and 1/mm."""
+
+
+def neutral(contrast: float) -> float:
+    """The height of its neutral axis, mm."""
+    return (0.125 + 0.375 * contrast) / (0.5 + 0.5 * contrast)
+
+
+def layered_beam(contrast: float, degree: int) -> bz.Body:
+    """A beam of two layers of the same nu, bent by a moment."""
+    axis, c = neutral(contrast), BEND
+    mesh = block((LENGTH, 1.0, 1.0), (4, 1, 2), origin=(0, -0.5, 0))
     upper = mesh.points[mesh.tets].mean(axis=1)[:, 2] > 0.5
     mesh = bz.TetMesh(mesh.points, mesh.tets, upper.astype(int), ("low", "high"), mesh.surfaces)
-    axis = (0.125 + 0.375 * contrast) / (0.5 + 0.5 * contrast)
-    parts = [(1.0, 0.0, 0.5), (contrast, 0.5, 1.0)]
-    EI = sum(E * ((top - axis) ** 3 - (bottom - axis) ** 3) / 3 for E, bottom, top in parts)
 
     def pull(x: Floats) -> Floats:
         E = np.where(x[:, 2] < 0.5, 1.0, contrast)
@@ -131,12 +137,20 @@ def two_metals(contrast: float) -> Iterator[Value]:
         bz.Traction("right", value=pull, exactness=8),
         bz.Traction("left", value=lambda x: -pull(x), exactness=8),
     ]
+    return bz.Body(mesh, degree, laws(contrast), held, ends)
+
+
+def two_metals(contrast: float) -> Iterator[Value]:
+    """Plane sections, one neutral axis."""
+    axis = neutral(contrast)
+    parts = [(1.0, 0.0, 0.5), (contrast, 0.5, 1.0)]
+    EI = sum(E * ((top - axis) ** 3 - (bottom - axis) ** 3) / 3 for E, bottom, top in parts)
     for degree in (2, 3):
-        found = bz.solve(bz.Body(mesh, degree, laws(contrast), held, ends), solver="direct")
-        end = float(found.displacement.at(np.array([[length, 0.0, axis]]))[0, 2])
-        where = f"degree {degree}, {len(mesh.tets)} tets"
-        yield Value("end, mm", where, end, c * length**2 / 2, 1e-8)
-        yield Value("twice the energy, N mm", where, 2 * found.energy, EI * c**2 * length, 1e-8)
+        found = bz.solve(layered_beam(contrast, degree), solver="direct")
+        end = float(found.displacement.at(np.array([[LENGTH, 0.0, axis]]))[0, 2])
+        where = f"degree {degree}, {len(found.body.mesh.tets)} tets"
+        yield Value("end, mm", where, end, BEND * LENGTH**2 / 2, 1e-8)
+        yield Value("twice the energy, N mm", where, 2 * found.energy, EI * BEND**2 * LENGTH, 1e-8)
 
 
 MIDDLE = 2**0.5

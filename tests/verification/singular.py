@@ -12,6 +12,7 @@ import bezsoma as bz
 from bezsoma.arrays import Floats
 from bezsoma.experiments.blocks import lifted, pulled
 from bezsoma.mesh import block
+from bezsoma.mesh.solids import l_block
 from verification.problem import ANALYTICAL, AT_LEAST, LAW, PUBLISHED, Family, Value
 
 FAMILY = Family("singular", "Point forces, notches, and the block of the paper's figure 6.")
@@ -64,17 +65,17 @@ def near_a_force() -> Iterator[Value]:
         )
 
 
+def notched(cells: int) -> bz.Body:
+    """An L in plane strain, clamped at its left, its right end pulled up; degree 3."""
+    mesh = l_block(arm=1.0, thickness=1.0 / cells, cells=cells, layers=1)
+    held = [bz.Fixed("left"), bz.Fixed("bottom", "top", components="z")]
+    load = [bz.Traction("right", value=(0, 0.01, 0))]
+    return bz.Body(mesh, 3, bz.LinearElastic(1.0, 0.3), held, load)
+
+
 def notch() -> Iterator[Value]:
     """The energy of an L in plane strain converges as h^(2 * 0.5445): Williams' exponent."""
-    from bezsoma.mesh.solids import l_block
-
-    law = bz.LinearElastic(1.0, 0.3)
-    energies = []
-    for cells in (2, 4, 8):
-        mesh = l_block(arm=1.0, thickness=1.0 / cells, cells=cells, layers=1)
-        held = [bz.Fixed("left"), bz.Fixed("bottom", "top", components="z")]
-        body = bz.Body(mesh, 3, law, held, [bz.Traction("right", value=(0, 0.01, 0))])
-        energies.append(bz.solve(body).energy * cells)
+    energies = [bz.solve(notched(cells)).energy * cells for cells in (2, 4, 8)]
     rate = float(np.log2((energies[1] - energies[0]) / (energies[2] - energies[1])))
     yield Value("rate of the energy", "degree 3, 2 to 8 cells an arm", rate, 2 * 0.5445, 0.15)
 

@@ -22,16 +22,21 @@ FAMILY = Family(
 PLANES = [bz.Fixed(f"{axis}0", components=axis) for axis in "xyz"]
 
 
+def thick(exact: ThickSphere, degree: int) -> bz.Solution:
+    """An eighth of a thick sphere under pressure."""
+    mesh = shell(inner=exact.a, outer=exact.b, cells=4, layers=2)
+    loads = exact.exact.traction(mesh, "inner", "outer", exactness=2 * degree + 6)
+    body = bz.Body(mesh, degree, exact.exact.material, PLANES, loads)
+    return bz.solve(body, solver="direct")
+
+
 def sphere(
     outer: float, nu: float, degrees: tuple[int, ...], within: dict[int, float]
 ) -> Iterator[Value]:
     exact = ThickSphere(E=1.0, nu=nu, p=1.0, a=1.0, b=outer)
-    mesh = shell(inner=1, outer=outer, cells=4, layers=2)
     for degree in degrees:
-        loads = exact.exact.traction(mesh, "inner", "outer", exactness=2 * degree + 6)
-        body = bz.Body(mesh, degree, exact.exact.material, PLANES, loads)
-        found = bz.solve(body, solver="direct")
-        where = f"degree {degree}, {len(mesh.tets)} tets"
+        found = thick(exact, degree)
+        where = f"degree {degree}, {len(found.body.mesh.tets)} tets"
         for r in (1.0, (1 + outer) / 2, outer):
             x = np.array([[0.0, 0.0, r]])
             u = float(found.displacement.at(x, outside="nearest")[0, 2])
@@ -84,22 +89,30 @@ class Tube:
         return Exact(bz.LinearElastic(self.E, self.nu), self.displacement, self.stress)
 
 
+SLICE = [
+    bz.Fixed("x0", components="x"),
+    bz.Fixed("y0", components="y"),
+    bz.Fixed("bottom", "top", components="z"),
+]
+"""A quarter of a tube in plane strain."""
+
+
+def pressed_tube(exact: Tube, mixed: bool, degree: int) -> bz.Solution:
+    """A quarter of a thick tube under pressure."""
+    mesh = tube(1.0, exact.b, (2, 3, 1), 0.5)
+    loads = [
+        bz.Traction(name, value=across(mesh, name, exact.stress), exactness=2 * degree + 6)
+        for name in ("inner", "outer")
+    ]
+    law = bz.LinearElastic(exact.E, exact.nu)
+    return bz.solve(bz.Body(mesh, degree, law, SLICE, loads, incompressible=mixed), solver="direct")
+
+
 def lame_tube(b: float, nu: float, mixed: bool) -> Iterator[Value]:
     exact = Tube(b, nu)
-    mesh = tube(1.0, b, (2, 3, 1), 0.5)
-    held = [
-        bz.Fixed("x0", components="x"),
-        bz.Fixed("y0", components="y"),
-        bz.Fixed("bottom", "top", components="z"),
-    ]
     for degree, within in ((2, 4e-2), (3, 4e-3), (4, 6e-4)):
-        loads = [
-            bz.Traction(name, value=across(mesh, name, exact.stress), exactness=2 * degree + 6)
-            for name in ("inner", "outer")
-        ]
-        body = bz.Body(mesh, degree, bz.LinearElastic(1.0, nu), held, loads, incompressible=mixed)
-        found = bz.solve(body, solver="direct")
-        where = f"degree {degree}, {len(mesh.tets)} tets"
+        found = pressed_tube(exact, mixed, degree)
+        where = f"degree {degree}, {len(found.body.mesh.tets)} tets"
         for r in (1.0, b):
             u = float(found.displacement.at(np.array([[r, 0.0, 0.25]]), outside="nearest")[0, 0])
             yield Value(f"u_r({r:g}), mm", where, u, float(exact.radial(np.array([r]))[0]), within)
@@ -142,37 +155,37 @@ def heavy_ball() -> Iterator[Value]:
         yield Value("error of u in L2", where, error, 0.0, 1e-10)
 
 
-def kirsch() -> Iterator[Value]:
-    """A hole in a plate drawn along x: the hoop stress is 3 at its top, -1 at its side."""
+def around_a_hole(x: Floats) -> Floats:
+    """Kirsch's stress (p, 3, 3) about a hole of radius 1 in a plate drawn along x by 1 MPa."""
+    r2 = x[:, 0] ** 2 + x[:, 1] ** 2
+    t = np.arctan2(x[:, 1], x[:, 0])
+    a, c2, c4 = 1 / r2, np.cos(2 * t), np.cos(4 * t)
+    s2, s4 = np.sin(2 * t), np.sin(4 * t)
+    s = np.zeros((len(x), 3, 3))
+    s[:, 0, 0] = 1 - a * (1.5 * c2 + c4) + 1.5 * a**2 * c4
+    s[:, 1, 1] = -a * (0.5 * c2 - c4) - 1.5 * a**2 * c4
+    s[:, 0, 1] = s[:, 1, 0] = -a * (0.5 * s2 + s4) + 1.5 * a**2 * s4
+    s[:, 2, 2] = 0.3 * (s[:, 0, 0] + s[:, 1, 1])
+    return s
 
-    def stress(x: Floats) -> Floats:
-        r2 = x[:, 0] ** 2 + x[:, 1] ** 2
-        t = np.arctan2(x[:, 1], x[:, 0])
-        a, c2, c4 = 1 / r2, np.cos(2 * t), np.cos(4 * t)
-        s2, s4 = np.sin(2 * t), np.sin(4 * t)
-        s = np.zeros((len(x), 3, 3))
-        s[:, 0, 0] = 1 - a * (1.5 * c2 + c4) + 1.5 * a**2 * c4
-        s[:, 1, 1] = -a * (0.5 * c2 - c4) - 1.5 * a**2 * c4
-        s[:, 0, 1] = s[:, 1, 0] = -a * (0.5 * s2 + s4) + 1.5 * a**2 * s4
-        s[:, 2, 2] = 0.3 * (s[:, 0, 0] + s[:, 1, 1])
-        return s
 
+def holed(degree: int) -> bz.Solution:
+    """A quarter of the plate about its hole."""
     mesh = tube(1.0, 3.0, (4, 6, 1), 0.5)
-    held = [
-        bz.Fixed("x0", components="x"),
-        bz.Fixed("y0", components="y"),
-        bz.Fixed("bottom", "top", components="z"),
+    loads = [
+        bz.Traction(name, value=across(mesh, name, around_a_hole), exactness=2 * degree + 8)
+        for name in ("inner", "outer")
     ]
+    body = bz.Body(mesh, degree, bz.LinearElastic(1.0, 0.3), SLICE, loads)
+    return bz.solve(body, solver="direct")
+
+
+def kirsch() -> Iterator[Value]:
+    """The hoop stress is 3 at the top of the hole, -1 at its side."""
     for degree, within in ((3, 0.04), (4, 0.01)):
-        loads = [
-            bz.Traction(name, value=across(mesh, name, stress), exactness=2 * degree + 8)
-            for name in ("inner", "outer")
-        ]
-        found = bz.solve(
-            bz.Body(mesh, degree, bz.LinearElastic(1.0, 0.3), held, loads), solver="direct"
-        )
+        found = holed(degree)
         mean = found.stress.averaged()
-        where = f"degree {degree}, {len(mesh.tets)} tets"
+        where = f"degree {degree}, {len(found.body.mesh.tets)} tets"
         top = mean.at(np.array([[0.0, 1.0, 0.25]]), outside="nearest").reshape(3, 3)
         side = mean.at(np.array([[1.0, 0.0, 0.25]]), outside="nearest").reshape(3, 3)
         yield Value("s_xx at the top", where, float(top[0, 0]), 3.0, within)

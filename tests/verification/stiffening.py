@@ -61,26 +61,28 @@ def homogeneous(reading: str) -> Iterator[Value]:
         yield Value(f"stress in {name}, largest error", "degree 2, 12 tets", away, 0.0, 1e-9)
 
 
+PULL = 0.4
+"""MPa."""
+
+
+def between_walls(law: bz.LinearElastic | bz.Stiffening, degree: int) -> bz.Body:
+    """A cube drawn out between slippery walls by a force on its top."""
+    walls = [bz.Fixed("left", "right", components="x"), bz.Fixed("front", "back", components="y")]
+    held = [*walls, bz.Fixed("bottom", components="z")]
+    return bz.Body(block(), degree, law, held, [bz.Traction("top", value=(0, 0, PULL))])
+
+
 def pulled(reading: str) -> Iterator[Value]:
     """Drawn out between slippery walls by a force: one equation for the strain."""
     measure, shears = READINGS[reading]
-    p = 0.4
 
     def missing(e: float) -> float:
-        return float(stress(np.diag([0.0, 0.0, e]), reading)[2, 2]) - p
+        return float(stress(np.diag([0.0, 0.0, e]), reading)[2, 2]) - PULL
 
     wanted = brentq(missing, 0.0, 0.5, xtol=1e-15)
-    walls = [bz.Fixed("left", "right", components="x"), bz.Fixed("front", "back", components="y")]
     law = bz.Stiffening(E, NU, A, measure, shears)
     for degree in (1, 2):
-        body = bz.Body(
-            block(),
-            degree,
-            law,
-            [*walls, bz.Fixed("bottom", components="z")],
-            [bz.Traction("top", value=(0, 0, p))],
-        )
-        found = bz.solve(body)
+        found = bz.solve(between_walls(law, degree))
         top = float(found.displacement.at(np.array([[0.5, 0.5, 1.0]]))[0, 2])
         yield Value("top, mm", f"degree {degree}, 6 tets", top, wanted, 1e-8)
 

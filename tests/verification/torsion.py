@@ -21,8 +21,8 @@ LAW = bz.LinearElastic(E=2.5, nu=0.25)
 """With G = 1 MPa."""
 
 
-def constant(mesh: bz.TetMesh, degree: int, height: float) -> float:
-    """J [mm4] of a prism about the z axis: the moment at 1 rad/mm, G = 1."""
+def twisted(mesh: bz.TetMesh, degree: int, height: float) -> bz.Solution:
+    """A prism whose top is turned about the z axis, 1 rad/mm, free to warp."""
     corner = mesh.points[mesh.points[:, 2] == 0]
     middle = corner[np.argmin(np.hypot(corner[:, 0], corner[:, 1]))]
     mesh = mesh.with_vertices("one", [middle])
@@ -32,8 +32,12 @@ def constant(mesh: bz.TetMesh, degree: int, height: float) -> float:
         bz.Prescribed("top", value=turn, components="xy"),
         bz.Fixed("one", components="z"),
     ]
-    found = bz.solve(bz.Body(mesh, degree, LAW, held), solver="direct")
-    return float(found.reactions["top"].moment[2])
+    return bz.solve(bz.Body(mesh, degree, LAW, held), solver="direct")
+
+
+def constant(mesh: bz.TetMesh, degree: int, height: float) -> float:
+    """J [mm4] of a prism: the moment at 1 rad/mm, G = 1."""
+    return float(twisted(mesh, degree, height).reactions["top"].moment[2])
 
 
 def rectangle_constant(ratio: float) -> float:
@@ -43,11 +47,16 @@ def rectangle_constant(ratio: float) -> float:
     return float((1 - 192 / np.pi**5 / ratio * terms.sum()) / 3)
 
 
+def slice_of_bar(ratio: float) -> bz.TetMesh:
+    """0.5 mm of a bar of a rectangle, its sides 1 and `ratio` mm, about the z axis."""
+    cells = (2 * round(2 * ratio), 4, 1)
+    return block((ratio, 1.0, 0.5), cells, origin=(-ratio / 2, -0.5, 0.0))
+
+
 def rectangle(ratio: float) -> Iterator[Value]:
     wanted = rectangle_constant(ratio) * ratio
     for degree, within in ((3, 2e-3), (4, 3e-4), (5, 5e-5)):
-        cells = (2 * round(2 * ratio), 4, 1)
-        mesh = block((ratio, 1.0, 0.5), cells, origin=(-ratio / 2, -0.5, 0.0))
+        mesh = slice_of_bar(ratio)
         where = f"degree {degree}, {len(mesh.tets)} tets"
         yield Value("J, mm4", where, constant(mesh, degree, 0.5), wanted, within)
 
