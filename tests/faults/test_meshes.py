@@ -48,7 +48,7 @@ FAULTS: dict[str, tuple[Callable[[], object], list[str]]] = {
     "negative index": (lambda: mesh(tets=[*TWO, [0, 1, 2, -1]]), ["point -1", "row 2"]),
     "huge unsigned": (
         lambda: mesh(tets=np.array([[0, 1, 2, 2**64 - 1]], np.uint64)),
-        ["point 18446744073709551615", "7 points"],
+        ["point 18446744073709551615", "numbered 0 to 6"],
     ),
     "fractions": (lambda: mesh(tets=[[0, 1, 2, 2.5]]), ["such as 2.5", "whole numbers"]),
     "whole floats": (lambda: mesh(tets=np.array(TWO, float)), ["float64", ".astype(int)"]),
