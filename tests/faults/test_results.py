@@ -98,6 +98,11 @@ def test_a_missing_parent_is_refused(tmp_path: Path) -> None:
     assert "does not exist; make it first" in said
 
 
+def test_a_name_longer_than_the_system_takes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="File name too long"):
+        destination(tmp_path / ("a" * 300))
+
+
 def test_a_file_as_parent_is_refused(tmp_path: Path) -> None:
     (tmp_path / "there").write_text("")
     assert "is not a folder" in refusal(tmp_path / "there" / "out")
@@ -379,7 +384,8 @@ def test_the_last_state_in_balance_is_kept_and_marked(
     assert (kept / "case.toml").read_bytes() == path.read_bytes()
     assert (kept / "before-after-front.png").is_file()
     assert cli.main(words) == 2
-    assert "results already stand in" in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "results already stand in" in said and "another folder with --keep-last" in said
 
 
 def test_without_a_folder_the_command_says_how_to_keep_it(
@@ -436,7 +442,8 @@ def test_a_disk_that_fills_does_not_hide_why_there_is_no_answer(
 
     monkeypatch.setattr(last, "write_results", full)
     path = case_file(tmp_path, *CRUSHED[:2])
-    with pytest.raises(NotConverged, match=r"could not be kept: .*no space is left") as failure:
+    with pytest.raises(NotConverged, match=r"could not be kept: .*with --keep-last") as failure:
         run_case(path, tmp_path / "out", keep_last=tmp_path / "kept")
     assert "no equilibrium was found" in str(failure.value)
+    assert "no space is left" in str(failure.value)
     assert [each.name for each in tmp_path.iterdir()] == ["case.toml"]

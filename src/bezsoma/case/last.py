@@ -31,6 +31,15 @@ def no_answer(fraction: float) -> str:
     return f"NOT THE ANSWER ({100 * fraction:.4g} % of the load)"
 
 
+def of_keep_last(refusal: InputError) -> str:
+    """What a refusal of the folder says, which `--keep-last` names and not `-o`.
+
+    >>> of_keep_last(InputError("results stand there; choose another folder with -o"))
+    'results stand there; choose another folder with --keep-last'
+    """
+    return str(refusal).replace("another folder with -o", "another folder with --keep-last")
+
+
 @contextmanager
 def keeping_last(
     case: Case,
@@ -80,7 +89,7 @@ def _kept(
         with place.filling() as partial:
             write_results(partial, marked, failure.last, told, progress)
     except InputError as trouble:
-        return f"; the last state in balance could not be kept: {trouble}"
+        return f"; the last state in balance could not be kept: {of_keep_last(trouble)}"
     return f"; the last state in balance is in {str(place.folder)!r}, marked as no answer"
 
 

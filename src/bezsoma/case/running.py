@@ -15,7 +15,7 @@ from bezsoma.case.advice import as_written, in_case
 from bezsoma.case.build import body_of
 from bezsoma.case.estimating import estimated
 from bezsoma.case.expectations import checked, motions, probe_points
-from bezsoma.case.last import keeping_last
+from bezsoma.case.last import keeping_last, of_keep_last
 from bezsoma.case.quantities import Measured
 from bezsoma.case.reading import Case, read_case
 from bezsoma.case.refining import solved, with_tolerance
@@ -114,7 +114,11 @@ def _place_of_last(place: Destination, folder: Any, overwrite: bool) -> Destinat
     """Where the last state in balance goes if there is no answer; never where the answer would."""
     if folder is None:
         return None
-    found = destination(path_given(folder, "keep_last= of run_case"), overwrite=overwrite)
+    given = path_given(folder, "keep_last= of run_case")
+    try:
+        found = destination(given, overwrite=overwrite)
+    except InputError as refusal:
+        raise InputError(of_keep_last(refusal)) from refusal
     if found.folder == place.folder:
         raise InputError(
             f"{str(place.folder)!r} is for the answer, and what --keep-last keeps is none; give "

@@ -67,7 +67,8 @@ def run_experiment(
     A quick run leaves no page and no pictures, which would speak of rows that it has not.
     """
     chosen, target = experiment(name), Path(folder)
-    refuse_occupied(target, overwrite)
+    with made(target):
+        refuse_occupied(target, overwrite)
     tables = chosen.measured(quick)
     files = {f"{file}.csv": table.as_csv().encode() for file, table in tables.items()}
     if not quick:
@@ -102,5 +103,5 @@ def refuse_occupied(folder: Path, overwrite: bool) -> None:
 def of_an_experiment(file: Path) -> bool:
     """Whether a file is one that experiments write: numbers, a picture, or a page that says so."""
     if file.name == "README.md":
-        return MARK in file.read_bytes()
+        return file.is_file() and MARK in file.read_bytes()
     return file.suffix in {".csv", ".png"} and file.is_file()

@@ -90,14 +90,14 @@ def destination(folder: Path | str, *, overwrite: bool = False) -> Destination:
     for permissions would say nothing about read-only disks.
     """
     folder = Path(os.path.abspath(folder))
-    if not folder.parent.is_dir():
-        missing = "is not a folder" if folder.parent.exists() else "does not exist"
-        raise InputError(
-            f"the results folder {folder.name!r} cannot be made in {str(folder.parent)!r}: that "
-            f"{missing}; make it first, or choose another folder with -o"
-        )
-    refuse_occupied(folder, overwrite=overwrite)
     with written(folder):
+        if not folder.parent.is_dir():
+            missing = "is not a folder" if folder.parent.exists() else "does not exist"
+            raise InputError(
+                f"the results folder {folder.name!r} cannot be made in {str(folder.parent)!r}: "
+                f"that {missing}; make it first, or choose another folder with -o"
+            )
+        refuse_occupied(folder, overwrite=overwrite)
         os.rmdir(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
     return Destination(folder, replaces=folder.exists() and any(folder.iterdir()))
 
