@@ -66,6 +66,7 @@ def test_the_laws_of_the_face_give_their_numbers(
     monkeypatch.setenv("BEZSOMA_DATA", str(data))
     page = (root / "docs/verification/face_laws.md").read_text(encoding="utf-8")
     tables = experiment("face_laws").measured(quick=True)
+    held(tables["laws"], root / SHELF / "face_laws" / "laws.csv")
     for row in tables["laws"].rows:
         line = re.search(rf"^\| {row.motion} \| 2 \| {row.law} \|(.+)$", page, re.MULTILINE)
         assert line
@@ -262,6 +263,8 @@ def test_the_command_leaves_a_page(tmp_path: Path, capsys: pytest.CaptureFixture
         ("a file", "is a file, not a folder"),
         ("below a file", "is a file, not a folder"),
         ("somebody's notes", "['README.md', 'notes.txt'], which no experiment wrote"),
+        ("a folder of their name", "['README.md'], which no experiment wrote"),
+        ("a" * 300, "File name too long"),
     ],
 )
 def test_a_place_that_is_not_its_own_is_left_alone_before_any_work(
@@ -274,11 +277,14 @@ def test_a_place_that_is_not_its_own_is_left_alone_before_any_work(
     monkeypatch.setattr(experiment("figure_5"), "measured", lambda quick: pytest.fail("worked"))
     (tmp_path / "notes.txt").write_text("mine")
     (tmp_path / "README.md").write_text("mine too")
-    folder = {"a file": "notes.txt", "below a file": "notes.txt/five"}.get(what, ".")
+    places = {"a file": "notes.txt", "below a file": "notes.txt/five", "somebody's notes": "."}
+    folder = places.get(what, what)
+    if what == "a folder of their name":
+        (tmp_path / folder / "README.md").mkdir(parents=True)
     command = ["experiment", "figure_5", "--overwrite", "--output", str(tmp_path / folder)]
     assert cli.main(command) == 2
     heard = capsys.readouterr().err
-    assert said in heard and "name another" in heard
+    assert said in heard and ("name another" in heard or "choose another" in heard)
     assert (tmp_path / "README.md").read_text() == "mine too"
 
 
