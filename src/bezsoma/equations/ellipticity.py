@@ -50,8 +50,7 @@ def lost_beside_pressure(internal: MixedPointwise, u: Floats, p: Floats) -> str:
 def _told(mesh: TetMesh, resistances: Iterable[tuple[Ints, Floats]]) -> str:
     """Where the least of the resistances (t, q) of some tets is, if it is negative."""
     lost, least, tet, at = 0, 0.0, -1, 0
-    for tets, resistance in resistances:
-        found = np.nan_to_num(resistance, nan=0.0)
+    for tets, found in resistances:
         lost += int((found.min(axis=1) < 0).sum())
         if found.min() < least:
             t, at = map(int, np.unravel_index(found.argmin(), found.shape))
