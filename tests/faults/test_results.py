@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from bezsoma import InputError, NotConverged, cli
-from bezsoma.case import last, read_case, run_case, running, showing
+from bezsoma.case import last, read_case, run_case, running, showing, writing
 from bezsoma.errors import BezSomaError
 from bezsoma.results import destination, read_results
 from cases.written import case_file
@@ -417,6 +417,20 @@ def test_pictures_of_what_is_no_answer_say_so_whatever_their_title(
     for title in (None, "Mine"):
         showing.results_picture(None, tmp_path / "kept", field=None, title=title)
     assert titles == [f"{mark}: A block", f"{mark}: Mine"]
+
+
+def test_pictures_of_fields_of_what_is_no_answer_say_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles: list[str] = []
+    monkeypatch.setattr(writing, "face_picture", lambda *given, **how: None)
+    monkeypatch.setattr(writing, "picture", lambda *given, title, **how: titles.append(title))
+    fields = ("pictures = []", 'pictures = ["front"]\nfields = ["von_mises"]')
+    path = case_file(tmp_path, *CRUSHED[:2], fields)
+    with pytest.raises(NotConverged, match="marked as no answer"):
+        run_case(path, tmp_path / "out", keep_last=tmp_path / "kept")
+    mark = read_results(tmp_path / "kept").unfinished
+    assert len(titles) == 1 and titles[0].startswith(f"{mark}: von Mises stress, MPa")
 
 
 def test_nothing_is_kept_of_a_body_that_bore_nothing(tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ def write_results(
         _write_vtu(folder / VTU, case, solution)
     if case.file.output.pictures:
         progress("write", None, "pictures")
-        _write_pictures(folder, case, solution)
+        _write_pictures(folder, case, solution, summary.get("unfinished", {}).get("mark", ""))
     output = case.file.output
     summary["pictures"] = [_picture(view) for view in output.pictures]
     summary["pictures"] += [_picture(v, name) for name in output.fields for v in output.pictures]
@@ -71,9 +71,14 @@ def _write_vtu(path: Path, case: Case, solution: Solution) -> None:
     write_vtu(path, solution.body.mesh, fields, metadata={"title": case.title})
 
 
-def _write_pictures(folder: Path, case: Case, solution: Solution) -> None:
-    """A sheet for each view: before, after, the size of the displacement, the outlines."""
+def _write_pictures(folder: Path, case: Case, solution: Solution, mark: str) -> None:
+    """A sheet for each view: before, after, the size of the displacement, the outlines.
+
+    Then one for each field and view, headed by `mark` where it is of no answer; the title of the
+    case, which heads the sheets, has it already.
+    """
     output = case.file.output
+    first = f"{mark}: " if mark else ""
     for view in output.pictures:
         face_picture(
             folder / _picture(view),
@@ -92,7 +97,7 @@ def _write_pictures(folder: Path, case: Case, solution: Solution) -> None:
             surface=output.surface or ("skin" if "skin" in solution.body.mesh.surfaces else None),
             view=view,
             label=LABELS[name],
-            title=f"{LABELS[name]} (displacement of degree {solution.body.degree})",
+            title=f"{first}{LABELS[name]} (displacement of degree {solution.body.degree})",
         )
 
 
