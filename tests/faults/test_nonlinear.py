@@ -13,7 +13,9 @@ import pytest
 import bezsoma as bz
 from bezsoma.arrays import Floats
 from bezsoma.equations.boundary import prescribed
+from bezsoma.equations.ellipticity import lost_ellipticity
 from bezsoma.equations.nonlinear import nonlinear_equations
+from bezsoma.equations.pointwise import Pointwise
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.solvers import memory
 from bezsoma.solvers.load_steps import loaded
@@ -435,6 +437,22 @@ def test_tissue_that_folds_between_the_points_of_the_quadrature_is_told() -> Non
     supports[1] = bz.Moved("top", translation=(0, 0, -0.2))
     sound = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))
     assert not sound.path[-1].events and not sound.advice and "advice" not in repr(sound)
+
+
+def test_folded_tissue_has_no_stress_and_the_rest_has() -> None:
+    """A law at finite strain says nothing where J <= 0: neither a stress nor how it resists."""
+    mesh = bz.block(size=(2, 1, 1), cells=(2, 1, 1))
+    supports = [bz.Fixed("left"), bz.Moved("right", translation=(-1.88, 0, 0))]
+    folded = bz.solve(bz.Body(mesh, 2, bz.NeoHooke(1.0, 0.3), supports))
+    lost = np.isnan(folded.stress.controls).any(axis=(1, 2, 3))
+    assert f"at corners of {lost.sum()} of 12 tets" in folded.advice and 0 < lost.sum() < 12
+    sound = np.isfinite(folded.stress.controls[~lost])
+    assert sound.all()
+    with pytest.raises(bz.InputError, match=r"NaN or infinite at \d+ of \d+ .* inside out"):
+        bz.picture(None, mesh, folded.von_mises)
+    net = ControlNet(bz.block(), 2)
+    through = Pointwise(net, [bz.NeoHooke(1.0, 0.3)], 6)
+    assert lost_ellipticity(through, net.points * [-1.2, 0, 0]) == ""
 
 
 def test_advice_on_a_body_with_a_pressure_is_in_its_summary() -> None:

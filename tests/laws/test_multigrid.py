@@ -324,7 +324,7 @@ def test_shapes_that_do_not_fit_are_refused(degree: int) -> None:
     with pytest.raises(ValueError, match="one row a control"):
         blocks.solve(wrong, wrong.copy(), 1.0, 1e-8, 10, lambda *_: None)
     for way in (preconditioner, preconditioned):
-        with pytest.raises(ValueError, match="must fit"):
+        with pytest.raises(ValueError, match="do not fit"):
             way(B.operator, B.held[:, :].repeat(2, axis=0))
 
 

@@ -90,11 +90,6 @@ def _kept(
             write_results(partial, marked, failure.last, told, progress)
     except InputError as trouble:
         return f"; the last state in balance could not be kept: {of_keep_last(trouble)}"
-    except ValueError as trouble:  # by the core, of tissue that is turned inside out
-        return (
-            "; the last state in balance could not be kept, since a law has no stress in it where "
-            f"one is asked for ({trouble}); take stress and what follows from it out of [output]"
-        )
     return f"; the last state in balance is in {str(place.folder)!r}, marked as no answer"
 
 

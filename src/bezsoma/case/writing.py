@@ -75,7 +75,8 @@ def _write_pictures(folder: Path, case: Case, solution: Solution, mark: str) -> 
     """A sheet for each view: before, after, the size of the displacement, the outlines.
 
     Then one for each field and view, headed by `mark` where it is of no answer; the title of the
-    case, which heads the sheets, has it already.
+    case, which heads the sheets, has it already. A field that has no number somewhere, as stress
+    where tissue is turned inside out, is not drawn: the solution's advice says where that is.
     """
     output = case.file.output
     first = f"{mark}: " if mark else ""
@@ -88,11 +89,14 @@ def _write_pictures(folder: Path, case: Case, solution: Solution, mark: str) -> 
             view=view,
             title=f"{case.title} (degree {solution.body.degree})",
         )
-    for name, view in product(output.fields, output.pictures):
+    drawn = {name: named(solution, name) for name in output.fields}
+    for (name, field), view in product(drawn.items(), output.pictures):
+        if not np.isfinite(field.controls).all():
+            continue
         picture(
             folder / _picture(view, name),
             solution.body.mesh,
-            named(solution, name),
+            field,
             displacement=solution.displacement,
             surface=output.surface or ("skin" if "skin" in solution.body.mesh.surfaces else None),
             view=view,

@@ -13,6 +13,7 @@ from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.mixed_pointwise import MixedPointwise
 from bezsoma.equations.pointwise import Pointwise
 from bezsoma.mechanics.ellipticity import least_resistance, least_resistance_beside
+from bezsoma.mechanics.laws import Law, folds
 from bezsoma.mesh.tets import TetMesh
 
 EXACTNESS = 2
@@ -34,7 +35,8 @@ def lost_ellipticity(pointwise: Pointwise, u: Floats) -> str:
     """
     points = Pointwise(pointwise.net, pointwise.laws, EXACTNESS, once=True)
     laws = ((law, tets) for law, tets in points.runs() if not law.linear)
-    found = ((tets, least_resistance(law, points.gradients(u, tets))) for law, tets in laws)
+    states = ((law, tets, points.gradients(u, tets)) for law, tets in laws)
+    found = ((tets, _sound(law, H, least_resistance(law, H))) for law, tets, H in states)
     with np.errstate(all="ignore"):
         return _told(pointwise.net.mesh, found)
 
@@ -42,9 +44,16 @@ def lost_ellipticity(pointwise: Pointwise, u: Floats) -> str:
 def lost_beside_pressure(internal: MixedPointwise, u: Floats, p: Floats) -> str:
     """The same at u (c, 3) mm and p (cp,) MPa, for laws beside a pressure."""
     points = replace(internal, exactness=EXACTNESS).points(u, p)
-    found = ((tets, least_resistance_beside(law, H, at)) for law, tets, H, at in points)
+    found = (
+        (tets, _sound(law, H, least_resistance_beside(law, H, at))) for law, tets, H, at in points
+    )
     with np.errstate(all="ignore"):
         return _told(internal.net.mesh, found)
+
+
+def _sound(law: Law, H: Floats, resistance: Floats) -> Floats:
+    """The resistance where the law says anything: not where tissue is turned inside out."""
+    return np.where(folds(law, H), np.inf, resistance)
 
 
 def _told(mesh: TetMesh, resistances: Iterable[tuple[Ints, Floats]]) -> str:

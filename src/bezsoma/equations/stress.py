@@ -16,7 +16,7 @@ from bezsoma import bernstein
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.volume import change_of_volume
 from bezsoma.mechanics.body import Body
-from bezsoma.mechanics.laws import Law, MixedLaw
+from bezsoma.mechanics.laws import Law, MixedLaw, folds
 from bezsoma.mechanics.materials import LinearElastic, Material
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.evaluation import gradient_controls, tet_portions
@@ -37,7 +37,8 @@ def stress(body: Body, displacement: Field) -> BrokenField:
 
     It is taken control by control, which is exact where the law is linear: the stress of a
     Bernstein polynomial with controls H_b is the one with controls stress(H_b). Of other laws it
-    is interpolated in the domain points of degree n - 1.
+    is interpolated in the domain points of degree n - 1: tets have no stress, but numbers that are
+    none, where tissue is turned inside out at one of these (`Solution.advice` tells).
     """
     H = BrokenField(
         body.mesh, displacement.degree - 1, gradient_controls(displacement, slice(None))
@@ -73,7 +74,10 @@ def _beside_pressure(body: Body, H: Floats, p: Floats, region: Ints) -> Floats:
             found[here] = law.deviatoric_stress(H[here]) - p[here][..., None, None] * np.eye(3)
         else:
             assert isinstance(law, MixedLaw)  # Body refuses other laws beside a pressure
-            found[here] = _turned(law, law.mixed_stress(H[here], p[here])[0], H[here])
+            folded = folds(law, H[here])[..., None, None]
+            sound = np.where(folded, 0.0, H[here])
+            P = law.mixed_stress(sound, p[here])[0]
+            found[here] = np.where(folded, np.nan, _turned(law, P, sound))
     return found
 
 
@@ -176,7 +180,10 @@ def _stress(body: Body, H: Floats, region: Ints) -> Floats:
 
 
 def _cauchy(law: Material, H: Floats) -> Floats:
-    return _turned(law, law.stress(H), H)
+    """At H (..., 3, 3); no number where tissue is turned inside out."""
+    folded = folds(law, H)[..., None, None]
+    sound = np.where(folded, 0.0, H)
+    return np.where(folded, np.nan, _turned(law, law.stress(sound), sound))
 
 
 def _turned(law: Material, P: Floats, H: Floats) -> Floats:

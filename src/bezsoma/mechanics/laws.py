@@ -13,7 +13,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from bezsoma.arrays import Floats
+from bezsoma.arrays import Bools, Floats
 from bezsoma.errors import InputError
 from bezsoma.mechanics.compiled import bulk
 from bezsoma.mechanics.law_checks import (
@@ -360,6 +360,21 @@ def nearest_isotropic(law: Law, H: Floats) -> tuple[Floats, Floats]:
     basis = [np.broadcast_to(strain, H.shape) for strain in strains()]
     moduli = [np.einsum("tkl,tkl->t", dH, law.derivative(H, dH)) for dH in basis]
     return moduli[0] / 3, np.sum(moduli[1:], axis=0) / 10
+
+
+def folds(law: Material, H: Floats) -> Bools:
+    """Where in H (..., 3, 3) tissue is turned inside out, J = det(I + H) <= 0, (...).
+
+    There a law at finite strain says nothing; laws at small strain have no such place.
+
+    >>> from bezsoma.mechanics.hyperelastic import NeoHooke
+    >>> H = np.stack([np.diag([-0.5, 0, 0]), np.diag([-1.5, 0, 0])])
+    >>> folds(NeoHooke(E=1.0, nu=0.25), H).tolist()
+    [False, True]
+    """
+    if not (isinstance(law, Law) and law.finite):
+        return np.zeros(H.shape[:-2], bool)
+    return np.asarray(np.linalg.det(np.eye(3) + H) <= 0)
 
 
 def at_rest(law: Law) -> tuple[float, float]:

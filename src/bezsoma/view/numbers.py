@@ -39,5 +39,9 @@ def measured(values: Floats, measure: Measure | None) -> Floats:
     else:
         found = np.asarray(measure(values.reshape(-1, parts)), float).reshape(values.shape[:-1])
     if not np.isfinite(found).all():
-        raise InputError("the field to be coloured is NaN or infinite on the surface")
+        raise InputError(
+            f"the field to be coloured is NaN or infinite at {int((~np.isfinite(found)).sum())} of "
+            f"{found.size} samples of the surface, as stress is where tissue is turned inside out "
+            "(`Solution.advice` says where); colour by another field, or by the displacement"
+        )
     return np.asarray(found)
