@@ -13,7 +13,15 @@ from bezsoma.arrays import Floats
 from bezsoma.errors import Inadmissible
 from bezsoma.solvers import nonlinear
 from bezsoma.solvers.load_steps import loaded
-from bezsoma.solvers.newton import Balance, Breakdown, Correction, Rule, System, equilibrium
+from bezsoma.solvers.newton import (
+    Balance,
+    Breakdown,
+    Correction,
+    Rule,
+    System,
+    TangentFailed,
+    equilibrium,
+)
 
 SAME = 1e-8
 """Two ways to the same answer, each stopped at a residual of 1e-10."""
@@ -93,6 +101,15 @@ def test_a_solve_that_does_not_come_as_far_as_asked_still_serves() -> None:
     found = equilibrium(system, np.full(1, 2.0), 1.0, 1, Rule(1e-10), path.append)
     assert abs(found[0] - 1) < 1e-10
     assert any("solved to 2 % only: " in event for each in path for event in each.events)
+
+
+def test_on_the_way_from_degree_one_no_tangent_may_be_other_than_it_should() -> None:
+    """What serves on the way of the load might lead to another state from there."""
+    held, parts = np.zeros(1, bool), (slice(0, 1),)
+    system = System(held, parts, (1.0,), lambda t: np.zeros(1), cubic, lambda x, t: Tired(x))
+    near = np.full(1, 2.0)
+    with pytest.raises(TangentFailed, match="solved to 2 % only"):
+        equilibrium(system, np.full(1, 9.0), 1.0, 1, Rule(1e-10), lambda each: None, near)
 
 
 class Astray(Spring):
