@@ -33,6 +33,7 @@ SLOW_TO_LOAD = (
     "PIL.Image",
     "matplotlib.figure",
 )
+RAISED = 70
 NO_END = 1000
 
 
@@ -71,7 +72,7 @@ def run(arguments: list[str], chosen: int, said: str) -> None:
     for stream in (1, 2):
         os.dup2(out, stream)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-    status = 70
+    status = RAISED
     try:
         choose(chosen)
         import pytest

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from house.apart import prefix
 from mutants.mutant import Mutant
 from mutants.planted import DECLARED, DEFINED, planted
-from mutants.server import NO_END
+from mutants.server import NO_END, RAISED
 
 LEFT_BEHIND = shutil.ignore_patterns(
     ".git", ".venv", "build", "dist", "_build", "generated", "__pycache__", ".*_cache", "*.so"
@@ -135,7 +135,9 @@ class Workshop:
         self.idle.put(server)
         if status == NO_END:
             return Verdict(1, f"no end within {LIMIT} s", "")
-        return Verdict(status, gist(text), text)
+        found = Verdict(status, gist(text), text)
+        # Pytest itself may fall, in the end, over what a test that failed has left behind.
+        return found._replace(status=1) if status == RAISED and found.first_failure() else found
 
 
 class Server:
