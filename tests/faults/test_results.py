@@ -440,6 +440,7 @@ def test_a_last_state_inside_out_is_kept_without_a_picture_of_its_stress(tmp_pat
         run_case(path, tmp_path / "out", keep_last=kept)
     pictures = {each.name for each in kept.glob("*.png")}
     assert "determinant-front.png" in pictures and "von_mises-front.png" not in pictures
+    assert set(read_results(kept).summary["pictures"]) == pictures
 
 
 def test_nothing_is_kept_of_a_body_that_bore_nothing(tmp_path: Path) -> None:

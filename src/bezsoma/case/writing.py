@@ -46,12 +46,11 @@ def write_results(
     if case.file.output.vtu:
         progress("write", None, VTU)
         _write_vtu(folder / VTU, case, solution)
+    summary["pictures"] = []
     if case.file.output.pictures:
         progress("write", None, "pictures")
-        _write_pictures(folder, case, solution, summary.get("unfinished", {}).get("mark", ""))
-    output = case.file.output
-    summary["pictures"] = [_picture(view) for view in output.pictures]
-    summary["pictures"] += [_picture(v, name) for name in output.fields for v in output.pictures]
+        mark = summary.get("unfinished", {}).get("mark", "")
+        summary["pictures"] = _write_pictures(folder, case, solution, mark)
     names = [path.name for path in folder.iterdir()]
     summary["files"] = sorted([*names, README, SUMMARY])
     (folder / README).write_text(readme(summary), encoding="utf-8")
@@ -71,8 +70,8 @@ def _write_vtu(path: Path, case: Case, solution: Solution) -> None:
     write_vtu(path, solution.body.mesh, fields, metadata={"title": case.title})
 
 
-def _write_pictures(folder: Path, case: Case, solution: Solution, mark: str) -> None:
-    """A sheet for each view: before, after, the size of the displacement, the outlines.
+def _write_pictures(folder: Path, case: Case, solution: Solution, mark: str) -> list[str]:
+    """A sheet for each view: before, after, the size of the displacement, the outlines; its names.
 
     Then one for each field and view, headed by `mark` where it is of no answer; the title of the
     case, which heads the sheets, has it already. A field that has no number somewhere, as stress
@@ -89,10 +88,9 @@ def _write_pictures(folder: Path, case: Case, solution: Solution, mark: str) -> 
             view=view,
             title=f"{case.title} (degree {solution.body.degree})",
         )
-    drawn = {name: named(solution, name) for name in output.fields}
+    fields = {name: named(solution, name) for name in output.fields}
+    drawn = {name: field for name, field in fields.items() if np.isfinite(field.controls).all()}
     for (name, field), view in product(drawn.items(), output.pictures):
-        if not np.isfinite(field.controls).all():
-            continue
         picture(
             folder / _picture(view, name),
             solution.body.mesh,
@@ -103,6 +101,8 @@ def _write_pictures(folder: Path, case: Case, solution: Solution, mark: str) -> 
             label=LABELS[name],
             title=f"{first}{LABELS[name]} (displacement of degree {solution.body.degree})",
         )
+    sheets = [_picture(view) for view in output.pictures]
+    return sheets + [_picture(view, name) for name, view in product(drawn, output.pictures)]
 
 
 def named(solution: Solution, name: str) -> Field | BrokenField:

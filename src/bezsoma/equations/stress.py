@@ -74,11 +74,12 @@ def _beside_pressure(body: Body, H: Floats, p: Floats, region: Ints) -> Floats:
             found[here] = law.deviatoric_stress(H[here]) - p[here][..., None, None] * np.eye(3)
         else:
             assert isinstance(law, MixedLaw)  # Body refuses other laws beside a pressure
-            folded = folds(law, H[here])[..., None, None]
-            sound = np.where(folded, 0.0, H[here])
-            P = law.mixed_stress(sound, p[here])[0]
-            found[here] = np.where(folded, np.nan, _turned(law, P, sound))
+            found[here] = _cauchy(law, H[here], _at_pressure(law, p[here]))
     return found
+
+
+def _at_pressure(law: MixedLaw, p: Floats) -> Callable[[Floats], Floats]:
+    return lambda H: law.mixed_stress(H, p)[0]
 
 
 def volume_change(displacement: Field) -> float:
@@ -172,23 +173,22 @@ def _symmetric(H: Floats) -> Floats:
 def _stress(body: Body, H: Floats, region: Ints) -> Floats:
     laws = body.material_of_region
     if len(laws) == 1:
-        return _cauchy(laws[0], H)
+        return _cauchy(laws[0], H, laws[0].stress)
     found = np.empty_like(H)
     for number, law in enumerate(laws):
-        found[region == number] = _cauchy(law, H[region == number])
+        found[region == number] = _cauchy(law, H[region == number], law.stress)
     return found
 
 
-def _cauchy(law: Material, H: Floats) -> Floats:
-    """At H (..., 3, 3); no number where tissue is turned inside out."""
+def _cauchy(law: Material, H: Floats, stress: Callable[[Floats], Floats]) -> Floats:
+    """Cauchy's stress at H (..., 3, 3) from that of a law: of finite laws P F^T / J.
+
+    No number where tissue is turned inside out.
+    """
+    if not (isinstance(law, Law) and law.finite):
+        return stress(H)
     folded = folds(law, H)[..., None, None]
     sound = np.where(folded, 0.0, H)
-    return np.where(folded, np.nan, _turned(law, law.stress(sound), sound))
-
-
-def _turned(law: Material, P: Floats, H: Floats) -> Floats:
-    """From the stress of a law to Cauchy's: of finite laws P F^T / J."""
-    if not (isinstance(law, Law) and law.finite):
-        return P
-    F = np.eye(3) + H
-    return np.asarray(P @ np.swapaxes(F, -1, -2) / np.linalg.det(F)[..., None, None])
+    F, P = np.eye(3) + sound, stress(sound)
+    found = np.asarray(P @ np.swapaxes(F, -1, -2) / np.linalg.det(F)[..., None, None])
+    return np.where(folded, np.nan, found)
