@@ -265,7 +265,7 @@ template <int value> struct Const {
 /// known when this is compiled, and all stays in registers.
 template <int n, int rows, int entity, int end, int row, class F>
 BEZSOMA_INLINE void each_entity(F &&f) {
-    if constexpr (n > 2) {
+    if constexpr (n > 3) {
         for (int e = entity; e < end; ++e)
             f.template operator()<rows>(e, row + (e - entity) * rows);
     } else if constexpr (entity < end) {

@@ -11,11 +11,23 @@ namespace bezsoma {
 
 namespace {
 
-// u and f of a chunk fit the second-level cache, and small meshes still give every thread its
-// share.
-constexpr std::int64_t most_controls = 12000, least_controls = 1500, shares = 64;
+// u and f of a chunk fit the second-level cache or nearly, and small meshes still give every thread
+// its share. Small chunks would touch more controls of others, which come and go apart.
+constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 32;
+
+/// Tets of one batch stand so many from each other in the walk. Neighbours share controls, and of
+/// sums onto one control each waits for the one before.
+constexpr std::int64_t apart = 4;
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
+
+/// The tet of a chunk, by the walk, at a place batch * lanes + lane: in a stretch of `apart` batches
+/// each lane walks on from tet to tet.
+std::int64_t tet_at(std::int64_t place, std::int64_t lanes, std::int64_t batches) {
+    const std::int64_t batch = place / lanes, begin = batch / apart * apart;
+    const std::int64_t stretch = std::min(apart, batches - begin);
+    return begin * lanes + place % lanes * stretch + batch - begin;
+}
 
 /// Where a chunk's own points begin among (foreign, own) of all chunks.
 std::int64_t first_point(const Chunk &chunk) {
@@ -84,10 +96,11 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
     team_.run(chunks_.parts.size(), [&](std::size_t c, std::size_t) {
         const Chunk &chunk = chunks_.parts[c];
         std::int32_t met = 0;
-        const std::int64_t places = (batch_[c + 1] - batch_[c]) * lanes_;
-        for (std::int64_t i = 0; i < places; ++i) {
+        const std::int64_t batches = batch_[c + 1] - batch_[c];
+        for (std::int64_t place = 0; place < batches * lanes_; ++place) {
+            const std::int64_t i = tet_at(place, lanes_, batches);
             const std::int64_t tet = chunk.tet + std::min(i, chunk.tets - 1);
-            const std::int64_t batch = batch_[c] + i / lanes_, lane = i % lanes_;
+            const std::int64_t batch = batch_[c] + place / lanes_, lane = place % lanes_;
             for (std::int64_t e = 0; e < per_tet; ++e) {
                 const std::int32_t local = chunks_.local[size(tet * per_tet + e)];
                 const bool own = local < chunk.owned;
@@ -128,13 +141,36 @@ void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk
     }
 }
 
+namespace {
+
+/// Adds a run of foreign forces to where it belongs in f.
+template <class T> void add_run(const T *from, T *f, const Run &run, int sides) {
+    const std::int64_t row = 3 * std::int64_t{sides};
+    T *to = f + row * run.control;
+    for (std::int64_t i = 0; i < row * run.length; ++i)
+        to[i] += from[i];
+}
+
+} // namespace
+
+/// One thread comes to the chunks in their order, which is that of the sums: it adds what a chunk
+/// has found for others at once, while it is at hand. Several wait until all chunks are done.
 template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
-    foreign_.resize(size(3 * chunks_.foreign * sides));
+    const bool alone = team_.size() == 1;
+    foreign_.resize(size(3 * sides * (alone ? chunks_.largest : chunks_.foreign)));
     const std::size_t parts = chunks_.parts.size();
-    team_.run(parts, [&](std::size_t chunk, std::size_t thread) {
-        forces_of_chunk(chunk, u, f, sides, scratch_[thread]);
+    team_.run(parts, [&](std::size_t c, std::size_t thread) {
+        const Chunk &chunk = chunks_.parts[c];
+        T *foreign = foreign_.data() + (alone ? 0 : 3 * sides * chunk.foreign_begin);
+        forces_of_chunk(c, u, f, foreign, sides, scratch_[thread]);
+        if (alone)
+            for (const Run &run : chunk.runs) {
+                add_run(foreign, f, run, sides);
+                foreign += 3 * std::int64_t{sides} * run.length;
+            }
     });
-    team_.run(parts, [&](std::size_t chunk, std::size_t) { add_foreign(chunk, f, sides); });
+    if (!alone)
+        team_.run(parts, [&](std::size_t chunk, std::size_t) { add_foreign(chunk, f, sides); });
 }
 
 /// Several sides are padded to whole registers while a chunk works on them.
@@ -196,13 +232,13 @@ template <class T> bool ElasticOperator<T>::in_place(const Chunk &chunk, int sid
 }
 
 template <class T>
-void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, int sides,
+void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
                                          std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t wide = width(sides), row = 3 * std::int64_t{sides};
     const std::int64_t own = 3 * chunk.owned * wide, foreign = 3 * chunk.foreign * wide;
     const T *u_here = u + row * chunk.control;
-    T *f_here = f + row * chunk.control, *f_foreign = foreign_.data() + row * chunk.foreign_begin;
+    T *f_here = f + row * chunk.control;
     Batches<T> b = batches(c);
     b.u = u_here, b.f = f_here, b.f_end = f_foreign + foreign;
     const bool direct = in_place(chunk, sides);
@@ -248,12 +284,8 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
 
 template <class T> void ElasticOperator<T>::add_foreign(std::size_t c, T *f, int sides) const {
     const std::int64_t row = 3 * std::int64_t{sides};
-    for (const Addition &added : chunks_.parts[c].added) {
-        const T *from = foreign_.data() + row * added.from;
-        T *to = f + row * added.run.control;
-        for (std::int64_t i = 0; i < row * added.run.length; ++i)
-            to[i] += from[i];
-    }
+    for (const Addition &added : chunks_.parts[c].added)
+        add_run(foreign_.data() + row * added.from, f, added.run, sides);
 }
 
 template class ElasticOperator<double>;

@@ -51,6 +51,35 @@ BEZSOMA_INLINE Batch<T, lanes> batch_of_tets(const Batches<T> &b, std::int64_t i
     return tet;
 }
 
+/// Batches that memory is given to bring what they need: long enough for it, and few enough that
+/// the nearest cache still holds what came.
+constexpr std::int64_t batches_ahead = 10, shapes_ahead = 2;
+
+/// Controls of a chunk that a batch meets first, on average: batches beside each other meet many
+/// and few in turn.
+template <class T> BEZSOMA_INLINE double met_by_batch(const Batches<T> &b) {
+    return static_cast<double>(b.met[b.count - 1]) / static_cast<double>(b.count);
+}
+
+/// About where the controls begin that are needed `batches_ahead` from batch i.
+BEZSOMA_INLINE std::int64_t control_ahead(double met_by_batch, std::int64_t i) {
+    return static_cast<std::int64_t>(met_by_batch * static_cast<double>(i + batches_ahead));
+}
+
+/// Calls for the shapes and the places of a batch to come.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void call_batch(const Batches<T> &b, std::int64_t i) {
+    constexpr std::int64_t line = 64, of_shapes = 9 * lanes * sizeof(T),
+                           of_places = 4 * entities(n) * lanes;
+    const char *shapes = reinterpret_cast<const char *>(b.geometry) + i * of_shapes;
+    const char *places = reinterpret_cast<const char *>(b.first) + i * of_places;
+    if constexpr (!forms_shapes<T>(n))
+        for (std::int64_t k = 0; k < of_shapes; k += line)
+            __builtin_prefetch(shapes + k);
+    for (std::int64_t k = 0; k < of_places; k += line)
+        __builtin_prefetch(places + k);
+}
+
 /// Clears the own forces that batch i is the first to meet.
 template <class T> BEZSOMA_INLINE void clear(const Batches<T> &b, std::int64_t i, int row) {
     const std::int64_t begin = i > 0 ? b.met[i - 1] : 0;
@@ -60,11 +89,13 @@ template <class T> BEZSOMA_INLINE void clear(const Batches<T> &b, std::int64_t i
 
 template <int n, class T, int lanes> void apply(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], f[3 * controls(n)];
+    const double met = met_by_batch(b);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
+        call_batch<n, T, lanes>(b, i + shapes_ahead);
         clear(b, i, 3);
         gather<n, T, lanes>(b, first, u);
-        const std::int64_t next = 3 * std::int64_t{b.met[i]};
+        const std::int64_t next = 3 * control_ahead(met, i);
         elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), u, f,
                                     {b.u + next, b.f + next});
         scatter<n, T, lanes>(b, first, f);
@@ -73,10 +104,11 @@ template <int n, class T, int lanes> void apply(const Batches<T> &b) {
 
 template <int n, class T, int lanes> double work(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], sum = {};
+    const double met = met_by_batch(b);
     for (std::int64_t i = 0; i < b.count; ++i) {
         gather<n, T, lanes>(b, b.first + i * entities(n) * lanes, u);
         sum += elastic_work<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), u,
-                                         b.u + 3 * std::int64_t{b.met[i]});
+                                         b.u + 3 * control_ahead(met, i));
     }
     double all = 0;
     for (int l = 0; l < lanes; ++l)
@@ -89,6 +121,7 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
     using Next = Ahead<n, T, lanes>;
     constexpr std::int64_t called = Next::line * Next::lines * controls(n - 1);
     R u[3 * controls(n)], f[3 * controls(n)];
+    const double met = met_by_batch(b);
     for (std::int64_t i = 0; i < b.count; ++i) {
         clear(b, i, 3 * sides);
         const Batch<T, lanes> all = batch_of_tets<n, T, lanes>(b, i);
@@ -100,7 +133,7 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
             tet.lambda = R{} + all.lambda[lane];
             tet.mu = R{} + all.mu[lane];
             // What a batch brings of one side a tet brings of as many as there are lanes.
-            const std::int64_t next = 3 * std::int64_t{b.met[i]} * sides + lane * called;
+            const std::int64_t next = 3 * control_ahead(met, i) * sides + lane * called;
             for (int side = 0; side < sides; side += lanes) {
                 each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);
