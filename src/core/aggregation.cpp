@@ -21,22 +21,9 @@ constexpr double weak_between_vertices = 0.1, weak_between_aggregates = 0.5;
 constexpr int power_steps = 5;
 constexpr double margin = 1.1; // what those steps may lack of the largest eigenvalue
 
-template <int n>
-void scaled_row(const BlockRows &a, const std::vector<float> &inverse, std::size_t i,
-                const float *x, float *y) {
-    Sum<n> sum, scaled;
-    sum.add(a, size_of(a.start[i]), size_of(a.start[i + 1]), x);
-    Register<n> total;
-    sum.total(total);
-    float numbers[8];
-    std::memcpy(numbers, &total, sizeof total);
-    scaled.add(inverse.data() + i * n * n, numbers);
-    scaled.total(total);
-    store<n>(total, y + i * n);
-}
-
 /// The largest eigenvalue of D^-1 A by the power method, from below by some ten per cent.
-double largest_eigenvalue(const BlockRows &a, const std::vector<float> &inverse, Team &team) {
+double largest_eigenvalue(const BlockRows &a, const std::vector<float> &inverse,
+                          const RowKernel &kernel, Team &team) {
     std::vector<float> x(size_of(a.rows() * a.high)), y(x.size());
     std::uint32_t seed = 1;
     for (float &v : x) { // a fixed rough vector
@@ -45,8 +32,8 @@ double largest_eigenvalue(const BlockRows &a, const std::vector<float> &inverse,
     }
     double before = std::inner_product(x.begin(), x.end(), x.begin(), 0.0), value = 1;
     for (int step = 0; step < power_steps; ++step) {
-        each_row(team, a.rows(), [&](std::size_t i, std::size_t) {
-            (a.high == 3 ? scaled_row<3> : scaled_row<6>)(a, inverse, i, x.data(), y.data());
+        each_piece(team, a.rows(), [&](std::size_t begin, std::size_t end, std::size_t) {
+            kernel.scaled(a.seen(), inverse.data(), begin, end, x.data(), y.data());
         });
         const double after = std::inner_product(y.begin(), y.end(), y.begin(), 0.0);
         value = std::sqrt(after / before);
@@ -112,7 +99,8 @@ struct Aggregation::Level {
     std::vector<float> residual; // here
     std::vector<float> r, z;     // on the coarser level
 
-    Level(BlockRows matrix, Team &team) : a(std::move(matrix), team) {}
+    Level(BlockRows matrix, const RowKernels &kernels, Team &team)
+        : a(std::move(matrix), kernels, team) {}
 
     std::size_t bytes() const {
         return a.bytes() + p.bytes() + 12 * columns.row.size() + 8 * columns.start.size() +
@@ -121,14 +109,14 @@ struct Aggregation::Level {
 };
 
 Aggregation::Aggregation(BlockRows matrix, const double *points, const std::uint8_t *fixed,
-                         Team &team)
-    : team_(team) {
+                         const RowKernels &kernels, Team &team)
+    : kernels_(kernels), team_(team) {
     // Of the vertices they are many, and made again where a second try asks for them.
     Motions of_rows = [=, rows = size_of(matrix.rows())] {
         return rigid_motions(points, fixed, rows);
     };
     for (bool coarser = true; coarser;) {
-        levels_.push_back(std::make_unique<Level>(std::move(matrix), team));
+        levels_.push_back(std::make_unique<Level>(std::move(matrix), kernels, team));
         Level &level = *levels_.back();
         if (level.a.matrix().rows() <= small) {
             factor_ = dense_factor(level.a.matrix());
@@ -164,13 +152,13 @@ bool Aggregation::coarsened(Level &level, const std::vector<float> &inverse, dou
     if (groups.count >= a.rows() * 8 / 10)
         return false;
     Tentative made = tentative(of_rows(), a.high, groups, team_);
-    const double largest = margin * largest_eigenvalue(a, inverse, team_);
+    const double largest = margin * largest_eigenvalue(a, inverse, kernels_.of(a.high), team_);
     // 4/3 of its inverse: the step that flattens the spectrum most (Vanek, Mandel, Brezina).
     level.p = smoothed(a, inverse, 4 / (3 * largest), made.basis, groups, team_);
     std::vector<float>().swap(made.basis);
     give_back_spare_memory();
     level.columns = columns_of(level.p, groups.count, team_);
-    std::optional<BlockRows> coarse = galerkin(a, level.p, level.columns, most, team_);
+    std::optional<BlockRows> coarse = galerkin(a, level.p, level.columns, most, kernels_, team_);
     if (!coarse)
         return false;
     matrix = std::move(*coarse);
@@ -191,11 +179,27 @@ void Aggregation::cycle(std::size_t at, const float *r, float *z) {
         return solve_coarsest(r, z);
     level.a.forward(r, z, level.residual.data(), team_);
     if (at + 1 < levels_.size()) {
-        restricted(level.p, level.columns, level.residual.data(), level.r.data(), team_);
+        restrict_to_coarse(level, level.residual.data());
         cycle(at + 1, level.r.data(), level.z.data());
-        add_prolonged(level.p, level.z.data(), z, team_);
+        add_prolonged(level, z);
     }
     level.a.backward(r, z, team_);
+}
+
+/// r on the coarser level = P^T residual.
+void Aggregation::restrict_to_coarse(Level &level, const float *residual) {
+    const auto columns = static_cast<std::int64_t>(level.columns.start.size()) - 1;
+    each_piece(team_, columns, [&](std::size_t begin, std::size_t end, std::size_t) {
+        kernels_.of(level.p.high)
+            .restricted(level.p.seen(), level.columns.seen(), begin, end, residual, level.r.data());
+    });
+}
+
+/// z += P e, for e on the coarser level.
+void Aggregation::add_prolonged(const Level &level, float *z) {
+    each_piece(team_, level.p.rows(), [&](std::size_t begin, std::size_t end, std::size_t) {
+        kernels_.of(level.p.high).prolong(level.p.seen(), begin, end, level.z.data(), z);
+    });
 }
 
 void Aggregation::solve_coarsest(const float *r, float *z) {

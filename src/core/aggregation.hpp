@@ -26,7 +26,8 @@ class Aggregation {
 public:
     /// matrix (vertices, vertices) of 3x3 blocks, its diagonal blocks present, with the identity
     /// in the rows and columns of fixed components; points (vertices, 3); fixed (vertices, 3).
-    Aggregation(BlockRows matrix, const double *points, const std::uint8_t *fixed, Team &team);
+    Aggregation(BlockRows matrix, const double *points, const std::uint8_t *fixed,
+                const RowKernels &kernels, Team &team);
     ~Aggregation();
     Aggregation(const Aggregation &) = delete;
     Aggregation &operator=(const Aggregation &) = delete;
@@ -45,10 +46,13 @@ private:
     bool coarsened(Level &level, const std::vector<float> &inverse, double threshold,
                    std::size_t most, BlockRows &matrix, Motions &of_rows);
     void cycle(std::size_t level, const float *r, float *z);
+    void restrict_to_coarse(Level &level, const float *residual);
+    void add_prolonged(const Level &level, float *z);
     void solve_coarsest(const float *r, float *z);
 
     std::vector<std::unique_ptr<Level>> levels_;
     std::vector<double> factor_; // the Cholesky factor of the coarsest matrix, dense
+    const RowKernels &kernels_;
     Team &team_;
 };
 

@@ -55,8 +55,8 @@ Inverse::Inverse(Walk &walk, const std::optional<Corners> &corners, const Suppor
         nb::gil_scoped_acquire counted;
         walk.first = {};
     }
-    aggregation =
-        std::make_unique<Aggregation>(std::move(matrix), points.data(), at_vertices.data(), team);
+    aggregation = std::make_unique<Aggregation>(std::move(matrix), points.data(),
+                                                at_vertices.data(), *kernels.rows, team);
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "row_kernels.hpp"
 #include "team.hpp"
 
 namespace bezsoma {
@@ -26,68 +27,38 @@ struct BlockRows {
     std::vector<std::int32_t> column;
     std::vector<float> value; // (blocks, high * wide) and the slack
 
+    RowsSeen seen() const { return {start.data(), column.data(), value.data()}; }
     std::int64_t rows() const { return static_cast<std::int64_t>(start.size()) - 1; }
     std::size_t bytes() const { return start.size() * 8 + column.size() * 4 + value.size() * 4; }
 };
 
 // ------------------------------------------------------------------------------------ small
-// Registers of 4 and 8 floats; the compiler splits what the processor does not have. Passed by
-// reference, so that no calling convention depends on the instruction set.
+// Eight floats, which hold a row of six; the compiler splits what the processor does not have.
 
-using Four = float __attribute__((vector_size(16)));
 using Eight = float __attribute__((vector_size(32)));
 
-template <int n> struct RegisterOf {
-    using type = Eight;
-};
-template <> struct RegisterOf<3> {
-    using type = Four;
-};
-template <int n> using Register = typename RegisterOf<n>::type;
+inline void load(const float *from, Eight &to) { std::memcpy(&to, from, sizeof to); }
 
-template <class R> inline void load(const float *from, R &to) { std::memcpy(&to, from, sizeof to); }
-
-/// Reads n numbers where more may not be read.
-template <int n, class R> inline void load_exactly(const float *from, R &to) {
-    to = R{};
-    std::memcpy(&to, from, n * sizeof(float));
+inline void store_motions(const Eight &from, float *to) {
+    std::memcpy(to, &from, motions * sizeof(float));
 }
-
-template <int n, class R> inline void store(const R &from, float *to) {
-    std::memcpy(to, &from, n * sizeof(float));
-}
-
-/// A sum of products of blocks (n, n), that stand column by column, with vectors: in three parts,
-/// as an addition takes several times as long to finish as to start.
-template <int n> struct Sum {
-    Register<n> part[3] = {};
-
-    void add(const float *block, const float *x) {
-        Register<n> column;
-        for (int l = 0; l < n; ++l) {
-            load(block + n * l, column);
-            part[l % 3] += column * x[l];
-        }
-    }
-
-    /// Adds the row of A x at hand, from block to block.
-    void add(const BlockRows &a, std::size_t begin, std::size_t end, const float *x) {
-        for (std::size_t at = begin; at < end; ++at)
-            add(a.value.data() + at * n * n, x + static_cast<std::size_t>(a.column[at]) * n);
-    }
-
-    void total(Register<n> &to) const { to = part[0] + part[1] + part[2]; }
-};
 
 // ------------------------------------------------------------------------------------- rows
 
 inline std::size_t size_of(std::int64_t n) { return static_cast<std::size_t>(n); }
 
-/// Runs work(row, thread) for all rows, a fixed number of them at a time.
-template <class Work> void each_row(Team &team, std::int64_t rows, const Work &work) {
+/// Runs work(begin, end, thread) for all rows, a fixed number of them at a time.
+template <class Work> void each_piece(Team &team, std::int64_t rows, const Work &work) {
     constexpr std::size_t piece = 512;
     team.run((size_of(rows) + piece - 1) / piece, [&](std::size_t p, std::size_t thread) {
-        for (std::size_t i = p * piece; i < std::min((p + 1) * piece, size_of(rows)); ++i)
+        work(p * piece, std::min((p + 1) * piece, size_of(rows)), thread);
+    });
+}
+
+/// Runs work(row, thread) for all rows.
+template <class Work> void each_row(Team &team, std::int64_t rows, const Work &work) {
+    each_piece(team, rows, [&](std::size_t begin, std::size_t end, std::size_t thread) {
+        for (std::size_t i = begin; i < end; ++i)
             work(i, thread);
     });
 }

@@ -14,11 +14,8 @@
 #pragma once
 
 #include "kernels.hpp"
+#include "lanes.hpp"
 #include "tet_controls.hpp"
-
-#ifndef BEZSOMA_ISA
-#error "BEZSOMA_ISA names the namespace of one instruction set"
-#endif
 
 // A build that only looks for errors (.ci/run) may leave out what compiles slowly.
 #ifndef BEZSOMA_HIGHEST_DEGREE
@@ -30,26 +27,6 @@
 #define BEZSOMA_LADDER 4
 
 namespace bezsoma::BEZSOMA_ISA {
-
-// Also for lambdas: left to itself the compiler stops inlining as the degrees add up.
-#define BEZSOMA_INLINED __attribute__((always_inline))
-#define BEZSOMA_INLINE inline BEZSOMA_INLINED
-
-/// `lanes` numbers in a register (Lanes) and anywhere in memory (Loose).
-template <class T, int lanes> struct Simd {
-    typedef T Lanes __attribute__((vector_size(lanes * sizeof(T))));
-    typedef T Loose __attribute__((vector_size(lanes * sizeof(T)), aligned(sizeof(T)), may_alias));
-};
-
-template <class T, int lanes> using Lanes = typename Simd<T, lanes>::Lanes;
-
-template <class T, int lanes> BEZSOMA_INLINE Lanes<T, lanes> load(const T *from) {
-    return *reinterpret_cast<const typename Simd<T, lanes>::Loose *>(from);
-}
-
-template <class T, int lanes> BEZSOMA_INLINE void store(T *to, Lanes<T, lanes> v) {
-    *reinterpret_cast<typename Simd<T, lanes>::Loose *>(to) = v;
-}
 
 // ---------------------------------------------------------------- loops over controls of a tet
 

@@ -21,8 +21,8 @@ constexpr std::int64_t apart = 4;
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
-/// The tet of a chunk, by the walk, at a place batch * lanes + lane: in a stretch of `apart` batches
-/// each lane walks on from tet to tet.
+/// The tet of a chunk, by the walk, at a place batch * lanes + lane: in a stretch of `apart`
+/// batches each lane walks on from tet to tet.
 std::int64_t tet_at(std::int64_t place, std::int64_t lanes, std::int64_t batches) {
     const std::int64_t batch = place / lanes, begin = batch / apart * apart;
     const std::int64_t stretch = std::min(apart, batches - begin);

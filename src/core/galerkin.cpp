@@ -33,48 +33,13 @@ Sparsity pattern_of_coarse(const Sparsity &ap, const Columns &columns, Team &tea
     });
 }
 
-/// One row of A P, (columns of the row, n) rows of six in eight.
-template <int n>
-void product_row(const BlockRows &a, const BlockRows &p, std::size_t i,
-                 const std::vector<std::int32_t> &place, Eight *row) {
-    Eight y[n];
-    for (auto at = size_of(a.start[i]); at < size_of(a.start[i + 1]); ++at) {
-        const float *block = a.value.data() + at * n * n;
-        const auto j = size_of(a.column[at]);
-        for (auto from = size_of(p.start[j]); from < size_of(p.start[j + 1]); ++from) {
-            Eight *to = row + place[size_of(p.column[from])] * n;
-            for (int l = 0; l < n; ++l)
-                load(p.value.data() + (from * n + size_of(l)) * motions, y[l]);
-            for (int k = 0; k < n; ++k) {
-                Eight sum = to[k];
-                for (int l = 0; l < n; ++l)
-                    sum += block[l * n + k] * y[l];
-                to[k] = sum;
-            }
-        }
-    }
-}
-
-/// to (6 columns of six in eight) += P^T (A P) for one pair of blocks.
-template <int n> inline void add_pair(const float *p, const Eight *ap, Eight *to) {
-    Eight x[n];
-    for (int k = 0; k < n; ++k)
-        load(p + k * motions, x[k]);
-    for (int m = 0; m < motions; ++m) {
-        Eight sum = to[m];
-        for (int k = 0; k < n; ++k)
-            sum += x[k] * ap[k][m];
-        to[m] = sum;
-    }
-}
-
 /// Forms A P for a slab of rows, then adds its part to every coarse row: sums run over rows in
 /// ascending order whatever the number of threads.
-template <int n> class Slabs {
+class Slabs {
 public:
     Slabs(const BlockRows &a, const BlockRows &p, const Columns &columns, const Sparsity &ap,
-          BlockRows &coarse, Team &team)
-        : a_(a), p_(p), columns_(columns), ap_(ap), coarse_(coarse), team_(team),
+          BlockRows &coarse, const RowKernel &kernel, Team &team)
+        : a_(a), p_(p), columns_(columns), ap_(ap), coarse_(coarse), kernel_(kernel), team_(team),
           places_(team.size()), sums_(team.size()),
           next_(columns.start.begin(), columns.start.end() - 1) {}
 
@@ -82,7 +47,7 @@ public:
         for (first_ = 0; first_ < a_.rows(); first_ = last_) {
             last_ = end_of_slab();
             const std::int64_t begin = ap_.start[size_of(first_)];
-            rows_.assign(size_of(ap_.start[size_of(last_)] - begin) * n, Eight{});
+            rows_.assign(size_of((ap_.start[size_of(last_)] - begin) * a_.high * 8), 0.0F);
             each_row(team_, last_ - first_, [&](std::size_t i, std::size_t thread) {
                 product(size_of(first_) + i, places_[thread]);
             });
@@ -95,23 +60,23 @@ public:
 private:
     std::int64_t end_of_slab() const {
         const auto begin = ap_.start.begin() + first_;
-        const auto end = std::upper_bound(begin + 1, ap_.start.end(), *begin + slab / n);
+        const auto end = std::upper_bound(begin + 1, ap_.start.end(), *begin + slab / a_.high);
         return first_ + std::max<std::int64_t>(end - begin - 1, 1);
     }
 
-    Eight *row(std::size_t i) {
-        return rows_.data() + size_of(ap_.start[i] - ap_.start[size_of(first_)]) * n;
+    float *row(std::size_t i) {
+        return rows_.data() + size_of((ap_.start[i] - ap_.start[size_of(first_)]) * a_.high * 8);
     }
 
     void product(std::size_t i, std::vector<std::int32_t> &place) {
         place.resize(size_of(coarse_.rows()));
         for (auto at = ap_.start[i]; at < ap_.start[i + 1]; ++at)
             place[size_of(ap_.column[size_of(at)])] = static_cast<std::int32_t>(at - ap_.start[i]);
-        product_row<n>(a_, p_, i, place, row(i));
+        kernel_.product(a_.seen(), p_.seen(), i, place.data(), row(i));
     }
 
     /// The upper half of coarse row g.
-    void add_to(std::size_t g, std::vector<std::int32_t> &place, std::vector<Eight> &sums) {
+    void add_to(std::size_t g, std::vector<std::int32_t> &place, std::vector<float> &sums) {
         auto e = size_of(next_[g]);
         const auto end = size_of(columns_.start[g + 1]);
         if (e == end || columns_.row[e] >= last_)
@@ -120,31 +85,32 @@ private:
         const std::int64_t own = coarse_.start[g];
         for (auto at = own; at < coarse_.start[g + 1]; ++at)
             place[size_of(coarse_.column[size_of(at)])] = static_cast<std::int32_t>(at - own);
-        sums.assign(size_of(coarse_.start[g + 1] - own) * motions, Eight{});
+        sums.assign(size_of(coarse_.start[g + 1] - own) * motions * 8, 0.0F);
         for (; e < end && columns_.row[e] < last_; ++e) {
             const auto i = size_of(columns_.row[e]);
-            const float *block = p_.value.data() + std::size_t{columns_.at[e]} * n * motions;
-            const Eight *from = row(i);
-            for (auto at = size_of(ap_.start[i]); at < size_of(ap_.start[i + 1]); ++at, from += n)
-                if (const auto other = ap_.column[at]; other >= of(g))
-                    add_pair<n>(block, from, sums.data() + place[size_of(other)] * motions);
+            const std::size_t numbers = size_of(p_.high) * motions;
+            kernel_.add_products(p_.value.data() + columns_.at[e] * numbers, row(i),
+                                 ap_.column.data() + ap_.start[i],
+                                 size_of(ap_.start[i + 1] - ap_.start[i]), of(g), place.data(),
+                                 sums.data());
         }
         next_[g] = static_cast<std::int64_t>(e);
         float *to = coarse_.value.data() + size_of(own) * motions * motions;
-        for (const Eight &column : sums)
-            for (int k = 0; k < motions; ++k)
-                *to++ += column[k];
+        for (std::size_t column = 0; column < sums.size(); column += 8)
+            for (std::size_t k = 0; k < motions; ++k)
+                *to++ += sums[column + k];
     }
 
     const BlockRows &a_, &p_;
     const Columns &columns_;
     const Sparsity &ap_;
     BlockRows &coarse_;
+    const RowKernel &kernel_;
     Team &team_;
     std::vector<std::vector<std::int32_t>> places_; // a thread each
-    std::vector<std::vector<Eight>> sums_;
+    std::vector<std::vector<float>> sums_;
     std::vector<std::int64_t> next_; // of each coarse row: the first entry not yet added
-    std::vector<Eight> rows_;        // of A P
+    std::vector<float> rows_;        // of A P, six numbers in eight
     std::int64_t first_ = 0, last_ = 0;
 };
 
@@ -188,17 +154,14 @@ Columns columns_of(const BlockRows &a, std::int64_t columns, Team &team) {
 }
 
 std::optional<BlockRows> galerkin(const BlockRows &a, const BlockRows &p, const Columns &columns,
-                                  std::size_t most, Team &team) {
+                                  std::size_t most, const RowKernels &kernels, Team &team) {
     const auto count = static_cast<std::int64_t>(columns.start.size()) - 1;
     const Sparsity ap = pattern_of_product(a, p, count, team);
     Sparsity found = pattern_of_coarse(ap, columns, team);
     if (found.column.size() > most)
         return std::nullopt;
     BlockRows coarse = with_pattern(std::move(found), motions, motions);
-    if (a.high == 3)
-        Slabs<3>(a, p, columns, ap, coarse, team).run();
-    else
-        Slabs<6>(a, p, columns, ap, coarse, team).run();
+    Slabs(a, p, columns, ap, coarse, kernels.of(a.high), team).run();
     mirror(coarse, team);
     return coarse;
 }

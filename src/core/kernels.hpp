@@ -66,6 +66,7 @@ template <class T> struct Kernel {
 
 struct PointwiseKernels;
 struct MixedKernels;
+struct RowKernels;
 
 struct Kernels {
     const char *name;
@@ -75,6 +76,7 @@ struct Kernels {
     BlockKernel blocks[10][4]; // by degree - 1 and dimension; empty where no control is inside
     const PointwiseKernels *pointwise;
     const MixedKernels *mixed;
+    const RowKernels *rows;
 };
 
 /// The widest instruction set that this processor has; or the one named.

@@ -185,6 +185,7 @@ template <int n, int dim> static constexpr BlockKernel block_kernel() {
 
 extern const PointwiseKernels pointwise_kernels;
 extern const MixedKernels mixed_kernels;
+extern const RowKernels row_kernels;
 extern const Kernels kernels;
 constinit const Kernels kernels = {BEZSOMA_TEXT(BEZSOMA_ISA),
                                    lanes64,
@@ -196,6 +197,7 @@ constinit const Kernels kernels = {BEZSOMA_TEXT(BEZSOMA_ISA),
                                     BEZSOMA_BLOCKS(7), BEZSOMA_BLOCKS(8), BEZSOMA_BLOCKS(9),
                                     BEZSOMA_BLOCKS(10)},
                                    &pointwise_kernels,
-                                   &mixed_kernels};
+                                   &mixed_kernels,
+                                   &row_kernels};
 
 } // namespace bezsoma::BEZSOMA_ISA

@@ -84,7 +84,7 @@ void smooth_row(const BlockRows &a, std::size_t i, const float *inverse, float o
                 load(basis.data() + (i * n + size_of(k)) * motions, row);
             for (int l = 0; l < n; ++l)
                 row -= omega * inverse[l * n + k] * sums[(at - begin) * n + size_of(l)];
-            store<motions>(row, p.value.data() + (at * n + size_of(k)) * motions);
+            store_motions(row, p.value.data() + (at * n + size_of(k)) * motions);
         }
 }
 

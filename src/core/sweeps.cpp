@@ -35,88 +35,11 @@ template <int n> void inverse_of_block(const float *block, float *inverse) {
             inverse[k * n + l] = static_cast<float>(a[size_of(k < l ? k * n + l : l * n + k)]);
 }
 
-/// z = D^-1 (r - sum) in row i.
-template <int n>
-inline void solve_row(const float *inverse, const Sum<n> &sum, const float *r, float *z) {
-    Register<n> rest, total;
-    load_exactly<n>(r, rest);
-    sum.total(total);
-    rest -= total;
-    float numbers[8];
-    std::memcpy(numbers, &rest, sizeof rest);
-    Sum<n> step;
-    step.add(inverse, numbers);
-    step.total(total);
-    store<n>(total, z);
-}
-
-template <int n>
-void forward_rows(const BlockRows &a, const std::int64_t *diagonal, std::size_t begin,
-                  std::size_t end, const float *r, float *z) {
-    for (std::size_t i = begin; i < end; ++i) {
-        const auto own = size_of(diagonal[i]);
-        Sum<n> sum;
-        sum.add(a, size_of(a.start[i]), own, z);
-        solve_row<n>(a.value.data() + own * n * n, sum, r + i * n, z + i * n);
-    }
-}
-
-template <int n>
-void later_rows(const BlockRows &a, const std::int64_t *diagonal, std::size_t i, const float *z,
-                float *residual) {
-    Sum<n> sum;
-    sum.add(a, size_of(diagonal[i]) + 1, size_of(a.start[i + 1]), z);
-    Register<n> total;
-    sum.total(total);
-    total = -total;
-    store<n>(total, residual + i * n);
-}
-
-template <int n>
-void backward_rows(const BlockRows &a, const std::int64_t *diagonal, std::size_t begin,
-                   std::size_t end, const float *r, float *z) {
-    for (std::size_t i = end; i-- > begin;) {
-        const auto own = size_of(diagonal[i]);
-        Sum<n> sum;
-        sum.add(a, size_of(a.start[i]), own, z);
-        sum.add(a, own + 1, size_of(a.start[i + 1]), z);
-        solve_row<n>(a.value.data() + own * n * n, sum, r + i * n, z + i * n);
-    }
-}
-
-template <int n> void prolong_row(const BlockRows &p, std::size_t i, const float *e, float *z) {
-    Eight sum[n] = {}, row, from;
-    for (auto at = size_of(p.start[i]); at < size_of(p.start[i + 1]); ++at) {
-        load(e + size_of(p.column[at]) * motions, from);
-        for (int k = 0; k < n; ++k) {
-            load(p.value.data() + (at * n + size_of(k)) * motions, row);
-            sum[k] += row * from;
-        }
-    }
-    for (int k = 0; k < n; ++k) // registers hold two numbers more than there are motions
-        z[i * n + size_of(k)] +=
-            ((sum[k][0] + sum[k][1]) + (sum[k][2] + sum[k][3])) + (sum[k][4] + sum[k][5]);
-}
-
-template <int n>
-void restrict_to(const BlockRows &p, const Columns &columns, std::size_t g, const float *r,
-                 float *e) {
-    Eight sum{}, row;
-    for (auto c = size_of(columns.start[g]); c < size_of(columns.start[g + 1]); ++c) {
-        const float *block = p.value.data() + std::size_t{columns.at[c]} * n * motions;
-        const float *from = r + size_of(columns.row[c]) * n;
-        for (int k = 0; k < n; ++k) {
-            load(block + k * motions, row);
-            sum += row * from[k];
-        }
-    }
-    store<motions>(sum, e + g * motions);
-}
-
 } // namespace
 
-Sweeps::Sweeps(BlockRows matrix, Team &team)
-    : a_(std::move(matrix)), diagonal_(size_of(a_.rows())), rows_a_piece_(a_.high == 3 ? 512 : 64) {
+Sweeps::Sweeps(BlockRows matrix, const RowKernels &kernels, Team &team)
+    : a_(std::move(matrix)), kernel_(kernels.of(a_.high)), diagonal_(size_of(a_.rows())),
+      rows_a_piece_(a_.high == 3 ? 512 : 64) {
     colour();
     std::vector<std::int32_t> rank(piece_.size());
     for (std::size_t c = 0; c + 1 < colour_start_.size(); ++c)
@@ -179,7 +102,8 @@ void Sweeps::colour() {
         piece_[size_of(next[size_of(of[p])]++)] = static_cast<std::int32_t>(p);
 }
 
-template <class Work> void Sweeps::each_piece(bool reversed, Team &team, const Work &work) const {
+template <class Work>
+void Sweeps::each_piece_of_a_colour(bool reversed, Team &team, const Work &work) const {
     const std::size_t colours = colour_start_.size() - 1;
     for (std::size_t k = 0; k < colours; ++k) {
         const std::size_t c = reversed ? colours - 1 - k : k;
@@ -211,36 +135,23 @@ void Sweeps::keep_inverse(const std::vector<float> &inverse, Team &team) {
 }
 
 void Sweeps::forward(const float *r, float *z, float *residual, Team &team) const {
-    each_piece(false, team, [&](std::size_t begin, std::size_t end) {
-        (a_.high == 3 ? forward_rows<3> : forward_rows<6>)(a_, diagonal_.data(), begin, end, r, z);
+    const RowsSeen a = a_.seen();
+    each_piece_of_a_colour(false, team, [&](std::size_t begin, std::size_t end) {
+        kernel_.forward(a, diagonal_.data(), begin, end, r, z);
     });
-    each_row(team, a_.rows(), [&](std::size_t i, std::size_t) {
-        (a_.high == 3 ? later_rows<3> : later_rows<6>)(a_, diagonal_.data(), i, z, residual);
+    each_piece(team, a_.rows(), [&](std::size_t begin, std::size_t end, std::size_t) {
+        kernel_.later(a, diagonal_.data(), begin, end, z, residual);
     });
 }
 
 void Sweeps::backward(const float *r, float *z, Team &team) const {
-    each_piece(true, team, [&](std::size_t begin, std::size_t end) {
-        (a_.high == 3 ? backward_rows<3> : backward_rows<6>)(a_, diagonal_.data(), begin, end, r,
-                                                             z);
+    each_piece_of_a_colour(true, team, [&](std::size_t begin, std::size_t end) {
+        kernel_.backward(a_.seen(), diagonal_.data(), begin, end, r, z);
     });
 }
 
 std::size_t Sweeps::bytes() const {
     return a_.bytes() + 8 * diagonal_.size() + 4 * (piece_.size() + colour_start_.size());
-}
-
-void add_prolonged(const BlockRows &p, const float *e, float *z, Team &team) {
-    each_row(team, p.rows(), [&](std::size_t i, std::size_t) {
-        (p.high == 3 ? prolong_row<3> : prolong_row<6>)(p, i, e, z);
-    });
-}
-
-void restricted(const BlockRows &p, const Columns &columns, const float *r, float *e, Team &team) {
-    each_row(team, static_cast<std::int64_t>(columns.start.size()) - 1,
-             [&](std::size_t g, std::size_t) {
-                 (p.high == 3 ? restrict_to<3> : restrict_to<6>)(p, columns, g, r, e);
-             });
 }
 
 } // namespace bezsoma

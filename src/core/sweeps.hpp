@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "block_rows.hpp"
-#include "galerkin.hpp"
 
 namespace bezsoma {
 
@@ -15,7 +14,7 @@ namespace bezsoma {
 class Sweeps {
 public:
     /// Puts the blocks of each row into the order: swept earlier, the diagonal, swept later.
-    Sweeps(BlockRows matrix, Team &team);
+    Sweeps(BlockRows matrix, const RowKernels &kernels, Team &team);
 
     const BlockRows &matrix() const { return a_; }
 
@@ -34,7 +33,8 @@ public:
     std::size_t bytes() const;
 
 private:
-    template <class Work> void each_piece(bool reversed, Team &team, const Work &work) const;
+    template <class Work>
+    void each_piece_of_a_colour(bool reversed, Team &team, const Work &work) const;
     struct Row {
         std::vector<std::int32_t> column;
         std::vector<float> value;
@@ -43,16 +43,11 @@ private:
     void arrange(std::size_t row, const std::vector<std::int32_t> &rank, Row &copy);
 
     BlockRows a_;
+    const RowKernel &kernel_;
     std::vector<std::int64_t> diagonal_;     // where each row's diagonal block stands
     std::vector<std::int32_t> piece_;        // by colour
     std::vector<std::int32_t> colour_start_; // (colours + 1,) among the pieces
     std::int64_t rows_a_piece_ = 0;
 };
-
-/// z += P e.
-void add_prolonged(const BlockRows &p, const float *e, float *z, Team &team);
-
-/// e = P^T r; r may be read past its end by the slack.
-void restricted(const BlockRows &p, const Columns &columns, const float *r, float *e, Team &team);
 
 } // namespace bezsoma

@@ -20,6 +20,7 @@
 #include "elastic_operator.hpp"
 #include "kernels.hpp"
 #include "preconditioner.hpp"
+#include "row_kernels.hpp"
 #include "tet_controls.hpp"
 #include "vertex_matrix.hpp"
 
@@ -145,7 +146,7 @@ Answer answer(const Mesh &mesh, const Kernels &kernels, std::size_t threads) {
                                                   mesh.fixed.data(), k.chunks(), kernels, team);
     Aggregation aggregation(
         vertex_matrix(tets, mesh.corners.data(), vertices, mesh.fixed_vertices.data(), team),
-        mesh.points_met.front().data(), mesh.fixed_vertices.data(), team);
+        mesh.points_met.front().data(), mesh.fixed_vertices.data(), *kernels.rows, team);
     auto f = vector_of<double>(length);
     double size = 0;
     for (std::size_t i = 0; i < length; ++i)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from math import comb
 
 import numpy as np
@@ -128,8 +129,8 @@ def test_chunks_add_what_they_share(degree: int) -> None:
     net = ControlNet(materials(block(cells=CHUNKED[degree], irregular=0.3)), degree)
     assert net.count > 2 * 1500, "a chunk has 1500 controls at least"
     K = matrix_of(net)
-    for instructions in SETS:
-        operator = MatrixFree(net, LAME, 2, instructions)
+    for instructions, threads in product(SETS, (1, 2)):
+        operator = MatrixFree(net, LAME, threads, instructions)
         for sides in (1, 5):
             u = vectors(net, sides)
             expected = np.stack([K @ u[..., s] for s in range(sides)], axis=-1)

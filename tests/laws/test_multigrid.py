@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.sparse.linalg as linalg
 
-from bezsoma import bernstein
+from bezsoma import _core, bernstein
 from bezsoma.arrays import Bools, Floats
 from bezsoma.equations.assembled import assembled
 from bezsoma.equations.boundary import prescribed
@@ -91,6 +91,17 @@ def test_symmetric_positive_and_zero_where_held(degree: int) -> None:
     assert float((r * Br).sum()) > 0 and float((s * Bs).sum()) > 0
     assert not Br[B.held].any()
     np.testing.assert_allclose(B(4 * r), 4 * Br, atol=FLOAT32 * np.abs(Br).max())
+
+
+@pytest.mark.parametrize("degree", [1, 3])
+def test_instruction_sets_differ_by_rounding_only(degree: int) -> None:
+    """On a mesh that takes several levels, so that rows of vertices and of aggregates count."""
+    body = mixed(degree, (11, 10, 10))
+    found = [Apart(body, 2, name) for name in _core.instruction_sets()]
+    r = found[0].free_vectors(1)[0]
+    answers = [B(r) for B in found]
+    for z in answers:
+        assert np.abs(z - answers[0]).max() < FLOAT32 * np.abs(z).max()
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3])

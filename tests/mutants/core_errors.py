@@ -49,8 +49,8 @@ CORE_ERRORS = (
     Mutant(
         "a slab of A P that forgets the slabs before it",
         f"{CORE}/galerkin.cpp",
-        "*to++ += column[k];",
-        "*to++ = column[k];",
+        "*to++ += sums[column + k];",
+        "*to++ = sums[column + k];",
         MULTIGRID,
     ),
     Mutant(
@@ -290,7 +290,7 @@ CORE_ERRORS = (
     ),
     Mutant(
         "a sweep back that is not the adjoint of the one before",
-        f"{CORE}/sweeps.cpp",
+        f"{CORE}/rows_isa.cpp",
         "for (std::size_t i = end; i-- > begin;) {",
         "for (std::size_t i = begin; i < end; ++i) {",
         MULTIGRID,

@@ -90,6 +90,16 @@ OPERATOR = (
             ";",
         ),
         ("tets of twice their volume", "std::abs(det) / 6", "std::abs(det) / 3"),
+        (
+            "a last stretch of batches walked as if it were whole",
+            "place % lanes * stretch + batch - begin;",
+            "place % lanes * apart + batch - begin;",
+        ),
+        (
+            "one thread that adds each run from where the first begins",
+            "foreign += 3 * std::int64_t{sides} * run.length;",
+            "foreign += 0 * run.length;",
+        ),
     ),
     *errors_in(
         f"{CORE}/chunks.cpp",

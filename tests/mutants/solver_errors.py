@@ -114,8 +114,8 @@ COARSE = (
         ("a smoothing step three times too long", "4 / (3 * largest)", "4 / (1 * largest)"),
         (
             "a cycle that forgets what the coarse levels found",
-            "add_prolonged(level.p, level.z.data(), z, team_);",
-            ";",
+            "        add_prolonged(level, z);",
+            "",
         ),
         (
             "the coarsest level solved half",
@@ -124,8 +124,8 @@ COARSE = (
         ),
         (
             "coarse levels given what the sweep has already done",
-            "level.residual.data(), level.r.data(), team_);",
-            "r, level.r.data(), team_);",
+            "restrict_to_coarse(level, level.residual.data());",
+            "restrict_to_coarse(level, r);",
         ),
         (
             "a dense factor without its corrections",
@@ -140,16 +140,6 @@ COARSE = (
             "a lower half that is the upper one untransposed",
             "to[k * motions + l] = from[l * motions + k];",
             "to[k * motions + l] = from[k * motions + l];",
-        ),
-        (
-            "A P with the blocks of A transposed",
-            "sum += block[l * n + k] * y[l];",
-            "sum += block[k * n + l] * y[l];",
-        ),
-        (
-            "P^T A P with one row of P for all",
-            "sum += x[k] * ap[k][m];",
-            "sum += x[0] * ap[k][m];",
         ),
     ),
     *errors_in(
@@ -185,20 +175,37 @@ COARSE = (
         "one more where planes of symmetry hold",
     ),
     *errors_in(
-        f"{CORE}/sweeps.cpp",
+        f"{CORE}/rows_isa.cpp",
         MULTIGRID,
         (
-            "a residual that counts the diagonal again",
-            "size_of(diagonal[i]) + 1, size_of(a.start[i + 1]), z);",
-            "size_of(diagonal[i]), size_of(a.start[i + 1]), z);",
+            "A P with the blocks of A transposed",
+            "sum += block[l * n + k] * y[l];",
+            "sum += block[k * n + l] * y[l];",
         ),
-        ("a restriction of x alone", "sum += row * from[k];", "sum += row * from[0];"),
+        (
+            "P^T A P with one row of P for all",
+            "sum += x[k] * row[8 * k + m];",
+            "sum += x[0] * row[8 * k + m];",
+        ),
+        (
+            "a residual that counts the diagonal again",
+            "sum.add(a, diagonal[i] + 1, a.start[i + 1], z);\n        sum.total(total);",
+            "sum.add(a, diagonal[i], a.start[i + 1], z);\n        sum.total(total);",
+        ),
+        ("a restriction of x alone", "+= row * from[k];", "+= row * from[0];"),
         ("a motion that is not prolonged", "(sum[k][4] + sum[k][5])", "(sum[k][4])"),
         (
-            "an inverse with a sign turned",
-            "a[size_of(i * n + k)] = -factor;",
-            "a[size_of(i * n + k)] = factor;",
+            "a step that measures the largest eigenvalue without the diagonal",
+            "times<n>(inverse + i * n * n, total, y + i * n);",
+            "write_exactly<n>(y + i * n, total);",
         ),
+    ),
+    Mutant(
+        "an inverse with a sign turned",
+        f"{CORE}/sweeps.cpp",
+        "a[size_of(i * n + k)] = -factor;",
+        "a[size_of(i * n + k)] = factor;",
+        MULTIGRID,
     ),
     *errors_in(
         f"{CORE}/vertex_matrix.cpp",

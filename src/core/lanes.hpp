@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Registers of one instruction set, which what is compiled for it works with.
+#pragma once
+
+#ifndef BEZSOMA_ISA
+#error "BEZSOMA_ISA names the namespace of one instruction set"
+#endif
+
+namespace bezsoma::BEZSOMA_ISA {
+
+// Also for lambdas: left to itself the compiler stops inlining as the degrees add up.
+#define BEZSOMA_INLINED __attribute__((always_inline))
+#define BEZSOMA_INLINE inline BEZSOMA_INLINED
+
+/// `lanes` numbers in a register (Lanes) and anywhere in memory (Loose).
+template <class T, int lanes> struct Simd {
+    typedef T Lanes __attribute__((vector_size(lanes * sizeof(T))));
+    typedef T Loose __attribute__((vector_size(lanes * sizeof(T)), aligned(sizeof(T)), may_alias));
+};
+
+template <class T, int lanes> using Lanes = typename Simd<T, lanes>::Lanes;
+
+template <class T, int lanes> BEZSOMA_INLINE Lanes<T, lanes> load(const T *from) {
+    return *reinterpret_cast<const typename Simd<T, lanes>::Loose *>(from);
+}
+
+template <class T, int lanes> BEZSOMA_INLINE void store(T *to, Lanes<T, lanes> v) {
+    *reinterpret_cast<typename Simd<T, lanes>::Loose *>(to) = v;
+}
+
+} // namespace bezsoma::BEZSOMA_ISA
