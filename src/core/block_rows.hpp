@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "large.hpp"
 #include "row_kernels.hpp"
 #include "team.hpp"
 
@@ -95,7 +96,7 @@ Sparsity sparsity(Team &team, std::int64_t rows, std::int64_t columns, const Vis
         found[p] = mine; // of exactly this size, where one that grew may have twice as much
     });
     std::partial_sum(made.start.begin(), made.start.end(), made.start.begin());
-    made.column.resize(size_of(made.start.back()));
+    make_large(made.column, size_of(made.start.back()));
     team.run(pieces, [&](std::size_t p, std::size_t) {
         std::copy(found[p].begin(), found[p].end(), made.column.begin() + made.start[p * piece]);
         std::vector<std::int32_t>().swap(found[p]);
@@ -107,7 +108,7 @@ Sparsity sparsity(Team &team, std::int64_t rows, std::int64_t columns, const Vis
 inline BlockRows with_pattern(Sparsity where, int high, int wide) {
     const std::size_t numbers = where.column.size() * size_of(high) * size_of(wide);
     return {high, wide, std::move(where.start), std::move(where.column),
-            std::vector<float>(numbers + BlockRows::slack)};
+            large<float>(numbers + BlockRows::slack)};
 }
 
 /// Where the diagonal block of a row stands.

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "formed_shapes.hpp"
+#include "large.hpp"
 
 namespace bezsoma {
 
@@ -55,9 +56,10 @@ TetShape ElasticTets::shape(std::int64_t i) const {
             g[e + 1][k] = b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3];
     }
     const double det = edge[0][0] * g[1][0] + edge[0][1] * g[1][1] + edge[0][2] * g[1][2];
+    const double inverse = 1 / det;
     for (int k = 0; k < 3; ++k) {
         for (int e = 1; e < 4; ++e)
-            g[e][k] /= det;
+            g[e][k] *= inverse;
         g[0][k] = -(g[1][k] + g[2][k] + g[3][k]);
     }
     tet.volume = std::abs(det) / 6;
@@ -85,13 +87,13 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
     batch_.push_back(0);
     for (const Chunk &chunk : chunks_.parts)
         batch_.push_back(batch_.back() + (chunk.tets + lanes_ - 1) / lanes_);
-    first_.resize(size(batch_.back() * per_tet * lanes_));
-    region_.resize(size(batch_.back() * lanes_));
+    make_large(first_, size(batch_.back() * per_tet * lanes_));
+    make_large(region_, size(batch_.back() * lanes_));
     met_.resize(size(batch_.back()));
     if (forms_shapes<T>(tets.degree)) {
-        points_.resize(size(3 * (chunks_.controls + chunks_.foreign)) + padding);
+        make_large(points_, size(3 * (chunks_.controls + chunks_.foreign)) + padding);
     } else {
-        geometry_.resize(size(batch_.back() * 9 * lanes_));
+        make_large(geometry_, size(batch_.back() * 9 * lanes_));
     }
     team_.run(chunks_.parts.size(), [&](std::size_t c, std::size_t) {
         const Chunk &chunk = chunks_.parts[c];
