@@ -16,10 +16,6 @@ namespace {
 // its share. Small chunks would touch more controls of others, which come and go apart.
 constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 32;
 
-/// Tets of one batch stand so many from each other in the walk. Neighbours share controls, and of
-/// sums onto one control each waits for the one before.
-constexpr std::int64_t apart = 4;
-
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
 /// The tet of a chunk, by the walk, at a place batch * lanes + lane: in a stretch of `apart`

@@ -51,19 +51,16 @@ BEZSOMA_INLINE Batch<T, lanes> batch_of_tets(const Batches<T> &b, std::int64_t i
     return tet;
 }
 
-/// Batches that memory is given to bring what they need: long enough for it, and few enough that
-/// the nearest cache still holds what came.
-constexpr std::int64_t batches_ahead = 10, shapes_ahead = 2;
+/// Numbers of u, and as many of f, that a batch calls for.
+template <int n, class T, int lanes>
+constexpr std::int64_t called =
+    Ahead<n, T, lanes>::line * Ahead<n, T, lanes>::lines * controls(n - 1);
 
-/// Controls of a chunk that a batch meets first, on average: batches beside each other meet many
-/// and few in turn.
-template <class T> BEZSOMA_INLINE double met_by_batch(const Batches<T> &b) {
-    return static_cast<double>(b.met[b.count - 1]) / static_cast<double>(b.count);
-}
-
-/// About where the controls begin that are needed `batches_ahead` from batch i.
-BEZSOMA_INLINE std::int64_t control_ahead(double met_by_batch, std::int64_t i) {
-    return static_cast<std::int64_t>(met_by_batch * static_cast<double>(i + batches_ahead));
+/// The control from which the batches of a stretch call, one after the other: the first of a
+/// stretch meets most of what all do, so it has to be there by then.
+template <class T> BEZSOMA_INLINE std::int64_t next_stretch(const Batches<T> &b, std::int64_t i) {
+    const std::int64_t last = i / apart * apart + apart - 1;
+    return b.met[last < b.count ? last : b.count - 1];
 }
 
 /// Calls for the shapes and the places of a batch to come.
@@ -89,13 +86,12 @@ template <class T> BEZSOMA_INLINE void clear(const Batches<T> &b, std::int64_t i
 
 template <int n, class T, int lanes> void apply(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], f[3 * controls(n)];
-    const double met = met_by_batch(b);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
-        call_batch<n, T, lanes>(b, i + shapes_ahead);
+        call_batch<n, T, lanes>(b, i + 2);
         clear(b, i, 3);
         gather<n, T, lanes>(b, first, u);
-        const std::int64_t next = 3 * control_ahead(met, i);
+        const std::int64_t next = 3 * next_stretch(b, i) + i % apart * called<n, T, lanes>;
         elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), u, f,
                                     {b.u + next, b.f + next});
         scatter<n, T, lanes>(b, first, f);
@@ -104,11 +100,11 @@ template <int n, class T, int lanes> void apply(const Batches<T> &b) {
 
 template <int n, class T, int lanes> double work(const Batches<T> &b) {
     Lanes<T, lanes> u[3 * controls(n)], sum = {};
-    const double met = met_by_batch(b);
     for (std::int64_t i = 0; i < b.count; ++i) {
         gather<n, T, lanes>(b, b.first + i * entities(n) * lanes, u);
         sum += elastic_work<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), u,
-                                         b.u + 3 * control_ahead(met, i));
+                                         b.u + 3 * next_stretch(b, i) +
+                                             i % apart * called<n, T, lanes>);
     }
     double all = 0;
     for (int l = 0; l < lanes; ++l)
@@ -118,13 +114,12 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
 
 template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
     using R = Lanes<T, lanes>;
-    using Next = Ahead<n, T, lanes>;
-    constexpr std::int64_t called = Next::line * Next::lines * controls(n - 1);
     R u[3 * controls(n)], f[3 * controls(n)];
-    const double met = met_by_batch(b);
     for (std::int64_t i = 0; i < b.count; ++i) {
         clear(b, i, 3 * sides);
         const Batch<T, lanes> all = batch_of_tets<n, T, lanes>(b, i);
+        const std::int64_t stretch =
+            3 * next_stretch(b, i) * sides + i % apart * lanes * called<n, T, lanes>;
         for (int lane = 0; lane < lanes; ++lane) {
             const std::int32_t *first = b.first + i * entities(n) * lanes;
             Batch<T, lanes> tet = {};
@@ -133,7 +128,7 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
             tet.lambda = R{} + all.lambda[lane];
             tet.mu = R{} + all.mu[lane];
             // What a batch brings of one side a tet brings of as many as there are lanes.
-            const std::int64_t next = 3 * control_ahead(met, i) * sides + lane * called;
+            const std::int64_t next = stretch + lane * called<n, T, lanes>;
             for (int side = 0; side < sides; side += lanes) {
                 each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);
