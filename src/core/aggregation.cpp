@@ -131,7 +131,7 @@ bool Aggregation::coarsen(Level &level, BlockRows &matrix, Motions &of_rows) {
     give_back_spare_memory();
     const BlockRows &a = level.a.matrix();
     const std::vector<float> inverse = level.a.inverse_diagonal(team_);
-    level.residual.resize(size_of(a.rows() * a.high) + BlockRows::slack);
+    level.residual.resize(size_of(a.rows() * a.high));
     // Flat tets couple strongly in one direction only. Aggregates along it are the better ones but
     // many, with many couplings: where they take more memory than this level, size decides.
     const double threshold = a.high == 3 ? weak_between_vertices : weak_between_aggregates;
@@ -164,8 +164,8 @@ bool Aggregation::coarsened(Level &level, const std::vector<float> &inverse, dou
     matrix = std::move(*coarse);
     make_definite(matrix);
     of_rows = [coarse = std::move(made.coarse)] { return coarse; };
-    level.r.resize(size_of(groups.count) * motions + BlockRows::slack);
-    level.z.resize(level.r.size());
+    level.r.resize(size_of(groups.count) * motions);
+    level.z.resize(level.r.size() + BlockRows::slack); // read in whole registers
     return true;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -32,17 +31,6 @@ struct BlockRows {
     std::int64_t rows() const { return static_cast<std::int64_t>(start.size()) - 1; }
     std::size_t bytes() const { return start.size() * 8 + column.size() * 4 + value.size() * 4; }
 };
-
-// ------------------------------------------------------------------------------------ small
-// Eight floats, which hold a row of six; the compiler splits what the processor does not have.
-
-using Eight = float __attribute__((vector_size(32)));
-
-inline void load(const float *from, Eight &to) { std::memcpy(&to, from, sizeof to); }
-
-inline void store_motions(const Eight &from, float *to) {
-    std::memcpy(to, &from, motions * sizeof(float));
-}
 
 // ------------------------------------------------------------------------------------- rows
 

@@ -239,7 +239,7 @@ template <int value> struct Const {
 };
 
 /// The entities of one dimension. At low degree unrolled for good: the place of every row is then
-/// known when this is compiled, and all stays in registers.
+/// known when this is compiled.
 template <int n, int rows, int entity, int end, int row, class F>
 BEZSOMA_INLINE void each_entity(F &&f) {
     if constexpr (n > 3) {

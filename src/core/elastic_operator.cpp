@@ -13,8 +13,8 @@ namespace bezsoma {
 namespace {
 
 // u and f of a chunk fit the second-level cache or nearly, and small meshes still give every thread
-// its share. Small chunks would touch more controls of others, which come and go apart.
-constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 32;
+// its share. Smaller chunks touch more controls of others, which are copied run by run.
+constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 64;
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 

@@ -6,9 +6,9 @@
 
 namespace bezsoma {
 
-/// Tets of a batch stand so many from each other in the walk, as lanes walk on from tet to tet
-/// through a stretch of so many batches. Neighbours share controls, and of sums onto one control
-/// each waits for the one before.
+/// Tets of a batch of `Batches` stand so many from each other in the walk, as each lane walks on
+/// from tet to tet through a stretch of that many batches (fewer at the end of a chunk). Neighbours
+/// share controls, and of sums onto one control each waits for the one before.
 constexpr std::int64_t apart = 4;
 
 /// Tets of one chunk in batches of one per lane, and the vectors they work on.

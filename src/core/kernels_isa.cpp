@@ -56,14 +56,14 @@ template <int n, class T, int lanes>
 constexpr std::int64_t called =
     Ahead<n, T, lanes>::line * Ahead<n, T, lanes>::lines * controls(n - 1);
 
-/// The control from which the batches of a stretch call, one after the other: the first of a
-/// stretch meets most of what all do, so it has to be there by then.
+/// One past the own controls that the stretch of batch i meets, where those of the next begin. Its
+/// batches call for them, each for its share: the first of a stretch meets most of what all do.
 template <class T> BEZSOMA_INLINE std::int64_t next_stretch(const Batches<T> &b, std::int64_t i) {
     const std::int64_t last = i / apart * apart + apart - 1;
     return b.met[last < b.count ? last : b.count - 1];
 }
 
-/// Calls for the shapes and the places of a batch to come.
+/// Calls for the shapes and the places of a batch to come, or for what lies past the last.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void call_batch(const Batches<T> &b, std::int64_t i) {
     constexpr std::int64_t line = 64, of_shapes = 9 * lanes * sizeof(T),

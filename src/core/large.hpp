@@ -13,7 +13,7 @@ namespace bezsoma {
 
 /// Makes n zeros of a vector, in pages of 2 MB where the system gives them: what is kept of a mesh
 /// is walked through at every product, and finding small pages takes a part of that time. Only
-/// whole pages within it are asked for, so that no memory is lost.
+/// whole pages within it are asked for, so that it takes no more than its size.
 template <class T> void make_large(std::vector<T> &v, std::size_t n) {
     v.clear();
     v.reserve(n);

@@ -2,10 +2,20 @@
 #include "prolongation.hpp"
 
 #include <cmath>
+#include <cstring>
 
 namespace bezsoma {
 
 namespace {
+
+// Eight floats, which hold a row of six; the compiler splits what the processor does not have.
+using Eight = float __attribute__((vector_size(32)));
+
+void load(const float *from, Eight &to) { std::memcpy(&to, from, sizeof to); }
+
+void store_motions(const Eight &from, float *to) {
+    std::memcpy(to, &from, motions * sizeof(float));
+}
 
 /// Modified Gram-Schmidt on the columns of x (rows, 6); r (6, 6) gives x = q r.
 void orthonormal(std::vector<double> &x, double *r) {

@@ -21,7 +21,8 @@ struct ColumnsSeen {
 };
 
 /// On square blocks (n, n) of one size, those of `a`, and blocks (n, 6) of a prolongation p. Rows
-/// begin to end, one after the other. Vectors are read in whole registers: see BlockRows::slack.
+/// begin to end, one after the other. Blocks, `inverse` and `e` of `prolong` are read in whole
+/// registers: BlockRows::slack numbers have to follow them.
 struct RowKernel {
     /// (D + L) z = r. The blocks at `diagonal`, one a row, hold D^-1; what was swept before stands
     /// before them.

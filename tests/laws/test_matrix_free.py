@@ -140,7 +140,7 @@ def test_chunks_add_what_they_share(degree: int) -> None:
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 5])
 def test_the_largest_chunks_too(degree: int) -> None:
-    """Full-grown chunks, too large for a matrix: an affine field knows its forces by itself.
+    """Larger chunks, too large for a matrix: an affine field knows its forces by itself.
 
     Stress is constant, so forces vanish inside, and sum_a f_a x_a^T = V T exactly.
     """
