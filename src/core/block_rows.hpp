@@ -13,8 +13,6 @@
 
 namespace bezsoma {
 
-constexpr int motions = 6; // rigid motions of an aggregate: the unknowns of every coarse level
-
 /// Small blocks in compressed rows, in float32.
 ///
 /// The blocks of a square matrix stand column by column, those of a prolongation (high, 6) row by
@@ -31,8 +29,6 @@ struct BlockRows {
     std::int64_t rows() const { return static_cast<std::int64_t>(start.size()) - 1; }
     std::size_t bytes() const { return start.size() * 8 + column.size() * 4 + value.size() * 4; }
 };
-
-// ------------------------------------------------------------------------------------- rows
 
 inline std::size_t size_of(std::int64_t n) { return static_cast<std::size_t>(n); }
 

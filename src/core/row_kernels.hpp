@@ -8,6 +8,8 @@
 
 namespace bezsoma {
 
+constexpr int motions = 6; // rigid motions of an aggregate: the unknowns of every coarse level
+
 /// BlockRows and Columns, seen.
 struct RowsSeen {
     const std::int64_t *start;

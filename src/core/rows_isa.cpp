@@ -7,9 +7,7 @@
 
 namespace bezsoma::BEZSOMA_ISA {
 
-constexpr int six = 6; // rigid motions of an aggregate, which eight lanes hold
-
-using Eight = Lanes<float, 8>;
+using Eight = Lanes<float, 8>; // hold the motions of a row
 
 /// Holds a column of a block.
 template <int n> using Register = Lanes<float, n == 3 ? 4 : 8>;
@@ -136,10 +134,10 @@ void prolong(const RowsSeen &p, std::size_t begin, std::size_t end, const float 
     for (std::size_t i = begin; i < end; ++i) {
         Eight sum[n] = {}, row, from;
         for (std::int64_t at = p.start[i]; at < p.start[i + 1]; ++at) {
-            read(e + std::int64_t{p.column[at]} * six, from);
+            read(e + std::int64_t{p.column[at]} * motions, from);
 #pragma GCC unroll 6
             for (int k = 0; k < n; ++k) {
-                read(p.value + (at * n + k) * six, row);
+                read(p.value + (at * n + k) * motions, row);
                 sum[k] += row * from;
             }
         }
@@ -158,19 +156,19 @@ void restricted(const RowsSeen &p, const ColumnsSeen &columns, std::size_t begin
         Eight sum[3] = {}, row;
         for (std::int64_t c = columns.start[g]; c < columns.start[g + 1]; ++c) {
             if (c + ahead < all) { // the blocks of a column stand far from each other
-                const float *next = p.value + std::int64_t{columns.at[c + ahead]} * n * six;
+                const float *next = p.value + std::int64_t{columns.at[c + ahead]} * n * motions;
                 __builtin_prefetch(next);
-                __builtin_prefetch(next + n * six - 1);
+                __builtin_prefetch(next + n * motions - 1);
             }
-            const float *block = p.value + std::int64_t{columns.at[c]} * n * six;
+            const float *block = p.value + std::int64_t{columns.at[c]} * n * motions;
             const float *from = r + std::int64_t{columns.row[c]} * n;
 #pragma GCC unroll 6
             for (int k = 0; k < n; ++k) {
-                read(block + k * six, row);
+                read(block + k * motions, row);
                 sum[k % 3] += row * from[k];
             }
         }
-        write_exactly<six>(e + g * six, sum[0] + sum[1] + sum[2]);
+        write_exactly<motions>(e + g * motions, sum[0] + sum[1] + sum[2]);
     }
 }
 
@@ -185,7 +183,7 @@ void product(const RowsSeen &a, const RowsSeen &p, std::size_t i, const std::int
             float *to = row + std::int64_t{place[p.column[from]]} * n * 8;
 #pragma GCC unroll 6
             for (int l = 0; l < n; ++l)
-                read(p.value + (from * n + l) * six, y[l]);
+                read(p.value + (from * n + l) * motions, y[l]);
 #pragma GCC unroll 6
             for (int k = 0; k < n; ++k) {
                 read(to + 8 * k, sum);
@@ -203,13 +201,13 @@ void add_products(const float *p, const float *row, const std::int32_t *column, 
                   std::int32_t least, const std::int32_t *place, float *sums) {
     Eight x[n], sum;
     for (int k = 0; k < n; ++k)
-        read(p + k * six, x[k]);
+        read(p + k * motions, x[k]);
     for (std::size_t b = 0; b < blocks; ++b, row += 8 * n) {
         if (column[b] < least)
             continue;
-        float *to = sums + std::int64_t{place[column[b]]} * six * 8;
+        float *to = sums + std::int64_t{place[column[b]]} * motions * 8;
 #pragma GCC unroll 6
-        for (int m = 0; m < six; ++m) {
+        for (int m = 0; m < motions; ++m) {
             read(to + 8 * m, sum);
 #pragma GCC unroll 6
             for (int k = 0; k < n; ++k)
