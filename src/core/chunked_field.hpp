@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chunks.hpp"
+#include "foreign.hpp"
 
 namespace bezsoma {
 
@@ -37,8 +38,7 @@ public:
         const Chunk &chunk = chunks_.parts[part];
         const auto wide = std::int64_t{components_};
         to = std::copy_n(from + wide * chunk.control, wide * chunk.owned, to);
-        for (const Run &run : chunk.runs)
-            to = std::copy_n(from + wide * run.control, wide * run.length, to);
+        copy_rows(chunk.foreign, from, wide, to);
     }
 
     /// First step: what a chunk found for its own controls goes to the vector, the rest beside.
@@ -46,17 +46,14 @@ public:
         const Chunk &chunk = chunks_.parts[part];
         const auto wide = std::int64_t{components_};
         std::copy_n(from, wide * chunk.owned, to + wide * chunk.control);
-        std::copy_n(from + wide * chunk.owned, wide * chunk.foreign,
+        std::copy_n(from + wide * chunk.owned, wide * std::ssize(chunk.foreign),
                     foreign_.data() + wide * chunk.foreign_begin);
     }
 
     /// Second step, when all chunks have done the first: adds what others found for its own.
     void add_foreign(std::size_t part, T *to) const {
         const auto wide = std::int64_t{components_};
-        for (const Addition &added : chunks_.parts[part].added)
-            for (std::int64_t i = 0; i < wide * added.run.length; ++i)
-                to[wide * added.run.control + i] +=
-                    foreign_[static_cast<std::size_t>(wide * added.from + i)];
+        add_rows(chunks_.parts[part].added, foreign_.data(), to, wide);
     }
 
 private:

@@ -2,6 +2,7 @@
 #include "chunks.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "tet_controls.hpp"
 
@@ -30,8 +31,12 @@ std::int32_t end_of_touched(const Chunks &all, const std::int32_t *first, const 
     return end;
 }
 
-/// The runs that begin below the chunk's own controls, ascending, each once.
-std::vector<Run> foreign_runs(const Chunks &all, const std::int32_t *first, const Chunk &chunk) {
+/// The controls below the chunk's own ones, ascending.
+std::vector<std::int32_t> foreign_controls(const Chunks &all, const std::int32_t *first,
+                                           const Chunk &chunk) {
+    struct Run {
+        std::int32_t control, length;
+    };
     const int per_tet = entities_of_tet(all.degree);
     std::vector<Run> runs;
     for (std::int64_t t = chunk.tet; t < chunk.tet + chunk.tets; ++t)
@@ -41,40 +46,38 @@ std::vector<Run> foreign_runs(const Chunks &all, const std::int32_t *first, cons
     std::ranges::sort(runs, {}, &Run::control);
     const auto same = [](const Run &a, const Run &b) { return a.control == b.control; };
     runs.erase(std::unique(runs.begin(), runs.end(), same), runs.end());
-    return runs;
+    std::vector<std::int32_t> controls;
+    for (const Run &run : runs)
+        for (std::int32_t i = 0; i < run.length; ++i)
+            controls.push_back(run.control + i);
+    return controls;
 }
 
 /// Writes where each run of the chunk's tets begins among the chunk's controls.
 void number_locally(Chunks &all, const std::int32_t *first, const Chunk &chunk) {
     const std::size_t per_tet = static_cast<std::size_t>(entities_of_tet(all.degree));
-    std::vector<std::int32_t> begin(chunk.runs.size());
-    std::int32_t next = chunk.owned;
-    for (std::size_t r = 0; r < chunk.runs.size(); ++r) {
-        begin[r] = next;
-        next += chunk.runs[r].length;
-    }
     const std::size_t from = static_cast<std::size_t>(chunk.tet) * per_tet;
     const std::size_t to = from + static_cast<std::size_t>(chunk.tets) * per_tet;
     for (std::size_t i = from; i < to; ++i) {
         if (first[i] >= chunk.control) {
             all.local[i] = first[i] - chunk.control;
         } else {
-            const auto run = std::ranges::lower_bound(chunk.runs, first[i], {}, &Run::control);
-            all.local[i] = begin[static_cast<std::size_t>(run - chunk.runs.begin())];
+            const auto at = std::ranges::lower_bound(chunk.foreign, first[i]);
+            all.local[i] = chunk.owned + static_cast<std::int32_t>(at - chunk.foreign.begin());
         }
     }
 }
 
-/// Tells every owner which runs other chunks add to.
+/// Tells every owner what other chunks add to.
 void hand_to_owners(Chunks &all, Team &team) {
     for (auto &chunk : all.parts) {
         team.ask();
-        std::int64_t from = chunk.foreign_begin;
-        for (const Run &run : chunk.runs) {
-            const auto after =
-                std::ranges::upper_bound(all.parts, run.control, {}, &Chunk::control);
-            std::prev(after)->added.push_back({run, from});
-            from += run.length;
+        auto from = static_cast<std::int32_t>(chunk.foreign_begin);
+        auto owner = all.parts.begin();
+        for (const std::int32_t control : chunk.foreign) {
+            while (control >= owner->control + owner->owned)
+                ++owner;
+            owner->added.push_back({control, from++});
         }
     }
 }
@@ -112,15 +115,14 @@ Chunks chunks(int degree, const std::int32_t *first, const std::vector<std::int6
         chunk.owned = static_cast<std::int32_t>(all.controls) - chunk.control;
     }
     each([&](Chunk &chunk) {
-        chunk.runs = foreign_runs(all, first, chunk);
+        chunk.foreign = foreign_controls(all, first, chunk);
         number_locally(all, first, chunk);
     });
     for (Chunk &chunk : all.parts) {
         chunk.foreign_begin = all.foreign;
-        for (const Run &run : chunk.runs)
-            chunk.foreign += run.length;
-        all.foreign += chunk.foreign;
-        all.largest = std::max(all.largest, chunk.owned + chunk.foreign);
+        all.foreign += std::ssize(chunk.foreign);
+        all.largest =
+            std::max(all.largest, chunk.owned + static_cast<std::int32_t>(chunk.foreign.size()));
     }
     hand_to_owners(all, team);
     return all;

@@ -23,24 +23,17 @@ constexpr std::size_t padding = 16;
 int entities_of_tet(int degree);
 int controls_inside(int degree, int entity);
 
-/// A run of controls that a chunk touches but does not own.
-struct Run {
-    std::int32_t control; // the first of the run
-    std::int32_t length;  // controls
-};
-
-/// A run that another chunk added to: what its owner has to sum.
+/// A control that another chunk added to: what its owner has to sum.
 struct Addition {
-    Run run;
-    std::int64_t from; // the first control of the run among all foreign controls
+    std::int32_t control;
+    std::int32_t from; // its place among the foreign controls of all chunks
 };
 
 struct Chunk {
-    std::int64_t tet, tets;      // its tets are [tet, tet + tets) of the walk
-    std::int32_t control, owned; // it owns controls [control, control + owned)
-    std::int64_t foreign_begin;  // its foreign controls begin here among those of all chunks
-    std::int32_t foreign;        // how many they are
-    std::vector<Run> runs;       // they, run by run
+    std::int64_t tet, tets;            // its tets are [tet, tet + tets) of the walk
+    std::int32_t control, owned;       // it owns controls [control, control + owned)
+    std::int64_t foreign_begin;        // its foreign controls begin here among those of all chunks
+    std::vector<std::int32_t> foreign; // they, ascending
     std::vector<Addition> added; // what other chunks add to its own, in the order of the chunks
 };
 
@@ -50,7 +43,7 @@ struct Chunks {
     std::int64_t foreign; // foreign controls of all chunks
     std::vector<Chunk> parts;
     std::vector<std::int32_t> local; // (tets, entities): where each run begins in its chunk, own
-                                     // controls first, then the foreign runs one after another
+                                     // controls first, then the foreign ones
     std::int32_t largest;            // the most controls that a chunk touches
 };
 

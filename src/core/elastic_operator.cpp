@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "foreign.hpp"
 #include "formed_shapes.hpp"
 #include "large.hpp"
 
@@ -13,7 +14,7 @@ namespace bezsoma {
 namespace {
 
 // u and f of a chunk fit the second-level cache or nearly, and small meshes still give every thread
-// its share. Smaller chunks touch more controls of others, which are copied run by run.
+// its share. Smaller chunks touch more controls of others, which are copied one by one.
 constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 64;
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
@@ -28,7 +29,7 @@ std::int64_t tet_at(std::int64_t place, std::int64_t lanes, std::int64_t batches
 
 /// Where a chunk's own points begin among (foreign, own) of all chunks.
 std::int64_t first_point(const Chunk &chunk) {
-    return 3 * (chunk.control + chunk.foreign_begin + chunk.foreign);
+    return 3 * (chunk.control + chunk.foreign_begin + std::ssize(chunk.foreign));
 }
 
 } // namespace
@@ -95,6 +96,7 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
         const Chunk &chunk = chunks_.parts[c];
         std::int32_t met = 0;
         const std::int64_t batches = batch_[c + 1] - batch_[c];
+        const auto foreign = static_cast<std::int32_t>(chunk.foreign.size());
         for (std::int64_t place = 0; place < batches * lanes_; ++place) {
             const std::int64_t i = tet_at(place, lanes_, batches);
             const std::int64_t tet = chunk.tet + std::min(i, chunk.tets - 1);
@@ -103,7 +105,7 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
                 const std::int32_t local = chunks_.local[size(tet * per_tet + e)];
                 const bool own = local < chunk.owned;
                 first_[size((batch * per_tet + e) * lanes_ + lane)] =
-                    own ? local : local - chunk.owned - chunk.foreign;
+                    own ? local : local - chunk.owned - foreign;
                 if (own)
                     met = std::max(met, local + controls_inside(tets.degree, static_cast<int>(e)));
             }
@@ -133,42 +135,30 @@ void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk
         const std::int64_t local = chunks_.local[size(4 * tet + v)];
         const double *from = tets.points + 3 * tets.corners[4 * tets.order[tet] + v];
         T *to = points_.data() + first_point(chunk) +
-                3 * (local < chunk.owned ? local : local - chunk.owned - chunk.foreign);
+                3 * (local < chunk.owned ? local : local - chunk.owned - std::ssize(chunk.foreign));
         for (int k = 0; k < 3; ++k)
             to[k] = static_cast<T>(from[k]);
     }
 }
 
-namespace {
-
-/// Adds a run of foreign forces to where it belongs in f.
-template <class T> void add_run(const T *from, T *f, const Run &run, int sides) {
-    const std::int64_t row = 3 * std::int64_t{sides};
-    T *to = f + row * run.control;
-    for (std::int64_t i = 0; i < row * run.length; ++i)
-        to[i] += from[i];
-}
-
-} // namespace
-
 /// One thread comes to the chunks in their order, which is that of the sums: it adds what a chunk
 /// has found for others at once, while it is at hand. Several wait until all chunks are done.
 template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
     const bool alone = team_.size() == 1;
-    foreign_.resize(size(3 * sides * (alone ? chunks_.largest : chunks_.foreign)));
+    const std::int64_t row = 3 * std::int64_t{sides};
+    foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)));
     const std::size_t parts = chunks_.parts.size();
     team_.run(parts, [&](std::size_t c, std::size_t thread) {
         const Chunk &chunk = chunks_.parts[c];
-        T *foreign = foreign_.data() + (alone ? 0 : 3 * sides * chunk.foreign_begin);
+        T *foreign = foreign_.data() + (alone ? 0 : row * chunk.foreign_begin);
         forces_of_chunk(c, u, f, foreign, sides, scratch_[thread]);
         if (alone)
-            for (const Run &run : chunk.runs) {
-                add_run(foreign, f, run, sides);
-                foreign += 3 * std::int64_t{sides} * run.length;
-            }
+            add_rows(chunk.foreign, foreign, f, row);
     });
     if (!alone)
-        team_.run(parts, [&](std::size_t chunk, std::size_t) { add_foreign(chunk, f, sides); });
+        team_.run(parts, [&](std::size_t c, std::size_t) {
+            add_rows(chunks_.parts[c].added, foreign_.data(), f, row);
+        });
 }
 
 /// Several sides are padded to whole registers while a chunk works on them.
@@ -214,12 +204,14 @@ template <class T> T *copied(const T *x, std::int64_t from, T *y, std::int64_t t
 
 } // namespace
 
-/// The foreign controls of a chunk run by run, sides padded; returns the end.
+/// The foreign controls of a chunk one after another, sides padded; returns the end.
 template <class T>
 T *ElasticOperator<T>::foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const {
-    for (const Run &run : chunk.runs)
-        to = copied(u + 3 * std::int64_t{sides} * run.control, sides, to, width(sides),
-                    3 * std::int64_t{run.length});
+    const std::int64_t row = 3 * std::int64_t{sides};
+    if (width(sides) == sides)
+        return copy_rows(chunk.foreign, u, row, to);
+    for (const std::int32_t control : chunk.foreign)
+        to = copied(u + row * control, sides, to, width(sides), 3);
     return to;
 }
 
@@ -234,7 +226,7 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
                                          std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t wide = width(sides), row = 3 * std::int64_t{sides};
-    const std::int64_t own = 3 * chunk.owned * wide, foreign = 3 * chunk.foreign * wide;
+    const std::int64_t own = 3 * chunk.owned * wide, foreign = 3 * std::ssize(chunk.foreign) * wide;
     const T *u_here = u + row * chunk.control;
     T *f_here = f + row * chunk.control;
     Batches<T> b = batches(c);
@@ -258,7 +250,7 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
         kernel_.apply_many(b, static_cast<int>(wide));
     if (!direct) {
         copied(b.f, wide, f_here, sides, 3 * std::int64_t{chunk.owned});
-        copied(b.f + own, wide, f_foreign, sides, 3 * std::int64_t{chunk.foreign});
+        copied(b.f + own, wide, f_foreign, sides, 3 * std::ssize(chunk.foreign));
     }
 }
 
@@ -278,12 +270,6 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
         sums[c] = kernel_.work(b);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);
-}
-
-template <class T> void ElasticOperator<T>::add_foreign(std::size_t c, T *f, int sides) const {
-    const std::int64_t row = 3 * std::int64_t{sides};
-    for (const Addition &added : chunks_.parts[c].added)
-        add_run(foreign_.data() + row * added.from, f, added.run, sides);
 }
 
 template class ElasticOperator<double>;

@@ -70,7 +70,6 @@ private:
     bool in_place(const Chunk &chunk, int sides) const;
     void forces_of_chunk(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides,
                          std::vector<T> &scratch);
-    void add_foreign(std::size_t chunk, T *f, int sides) const;
 
     Kernel<T> kernel_;
     int lanes_;

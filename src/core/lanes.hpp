@@ -6,6 +6,10 @@
 #error "BEZSOMA_ISA names the namespace of one instruction set"
 #endif
 
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
 namespace bezsoma::BEZSOMA_ISA {
 
 // Also for lambdas: left to itself the compiler stops inlining as the degrees add up.
@@ -22,6 +26,17 @@ template <class T, int lanes> using Lanes = typename Simd<T, lanes>::Lanes;
 
 template <class T, int lanes> BEZSOMA_INLINE Lanes<T, lanes> load(const T *from) {
     return *reinterpret_cast<const typename Simd<T, lanes>::Loose *>(from);
+}
+
+/// Four numbers and four others beside each other.
+BEZSOMA_INLINE Lanes<double, 8> load_halves(const double *low, const double *high) {
+#if defined(__AVX512F__) // a load that inserts, where GCC makes two loads and a shuffle
+    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high),
+                              1);
+#else
+    return __builtin_shufflevector(load<double, 4>(low), load<double, 4>(high), 0, 1, 2, 3, 4, 5, 6,
+                                   7);
+#endif
 }
 
 template <class T, int lanes> BEZSOMA_INLINE void store(T *to, Lanes<T, lanes> v) {

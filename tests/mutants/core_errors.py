@@ -154,13 +154,6 @@ CORE_ERRORS = (
         CHOLESKY,
     ),
     Mutant(
-        "what other chunks add to a chunk's controls is dropped",
-        f"{CORE}/elastic_operator.cpp",
-        "to[i] += from[i];",
-        "to[i] += 0 * from[i];",
-        MATRIX_FREE,
-    ),
-    Mutant(
         "a lane that reads its neighbour's controls",
         f"{CORE}/elastic_kernel.hpp",
         "from[l] = place(b.u, b.u_end, first[entity * lanes + l]);",

@@ -46,6 +46,11 @@ OPERATOR = (
             "u[order[0]] = block[r];",
         ),
         (
+            "eight lanes of which one takes what is another's",
+            "load_halves(from[5] + begin, from[7] + begin)",
+            "load_halves(from[5] + begin, from[6] + begin)",
+        ),
+        (
             "a row left over that is scattered as the first of its run",
             "scatter_square<1, T, lanes>(to, begin + pairs, order + begin + pairs, f);",
             "scatter_square<1, T, lanes>(to, begin + pairs, order + begin, f);",
@@ -95,10 +100,24 @@ OPERATOR = (
             "place % lanes * stretch + batch - begin;",
             "place % lanes * apart + batch - begin;",
         ),
+    ),
+    *errors_in(
+        f"{CORE}/foreign.hpp",
+        MATRIX_FREE,
         (
-            "one thread that adds each run from where the first begins",
-            "foreign += 3 * std::int64_t{sides} * run.length;",
-            "foreign += 0 * run.length;",
+            "one thread that adds the first number that a chunk found for others everywhere",
+            "x[row * control + k] += *from++;",
+            "x[row * control + k] += *from;",
+        ),
+        (
+            "what other chunks add to a chunk's controls is dropped",
+            "+= from[row * one.from + k];",
+            "+= 0 * from[row * one.from + k];",
+        ),
+        (
+            "shared controls read with their first component for all",
+            "*to++ = x[row * control + k];",
+            "*to++ = x[row * control];",
         ),
     ),
     *errors_in(
@@ -106,13 +125,18 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "what other chunks add looked for in the wrong place",
-            "            from += run.length;",
-            "            from += 1;",
+            "push_back({control, from++});",
+            "push_back({control, from});",
         ),
         (
-            "runs of shared controls that lie upon each other",
-            "next += chunk.runs[r].length;",
-            "next += 1;",
+            "runs of shared controls that are their first control over and over",
+            "controls.push_back(run.control + i);",
+            "controls.push_back(run.control);",
+        ),
+        (
+            "shared controls given to the owner of others",
+            "while (control >= owner->control + owner->owned)",
+            "while (control > owner->control + owner->owned)",
         ),
     ),
 )
@@ -164,14 +188,12 @@ MIXED = (
         ),
     ),
     *errors_in(
-        f"{CORE}/chunked_field.hpp",
+        f"{CORE}/foreign.hpp",
         MIXED_FREE,
         (
             "what other chunks found that replaces a chunk's own",
-            "to[wide * added.run.control + i] +=\n"
-            "                    foreign_[static_cast<std::size_t>(wide * added.from + i)];",
-            "to[wide * added.run.control + i] =\n"
-            "                    foreign_[static_cast<std::size_t>(wide * added.from + i)];",
+            "x[row * one.control + k] += from",
+            "x[row * one.control + k] = from",
         ),
     ),
 )

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Foreign controls of a chunk, between the vectors of a mesh and the area of the chunk: one by one,
+// since runs of all lengths would be branches that no processor foresees.
+#pragma once
+
+#include <cstdint>
+#include <iterator>
+#include <type_traits>
+#include <vector>
+
+#include "chunks.hpp"
+
+namespace bezsoma {
+
+/// Calls work(row), which handles rows of so many numbers; three, which most have, are known when
+/// this is compiled.
+template <class Work> void with_row(std::int64_t row, const Work &work) {
+    if (row == 3)
+        work(std::integral_constant<std::int64_t, 3>{});
+    else
+        work(row);
+}
+
+/// Copies the rows of these controls in x one after another; returns the end of what was written.
+template <class T>
+T *copy_rows(const std::vector<std::int32_t> &controls, const T *x, std::int64_t row, T *to) {
+    with_row(row, [&](auto row) {
+        for (const std::int32_t control : controls)
+            for (std::int64_t k = 0; k < row; ++k)
+                *to++ = x[row * control + k];
+    });
+    return to;
+}
+
+/// Adds what stands one after another to the rows of these controls in x.
+template <class T>
+void add_rows(const std::vector<std::int32_t> &controls, const T *from, T *x, std::int64_t row) {
+    with_row(row, [&](auto row) {
+        for (const std::int32_t control : controls)
+            for (std::int64_t k = 0; k < row; ++k)
+                x[row * control + k] += *from++;
+    });
+}
+
+/// The same from wherever each addition stands.
+template <class T>
+void add_rows(const std::vector<Addition> &added, const T *from, T *x, std::int64_t row) {
+    with_row(row, [&](auto row) {
+        for (const Addition &one : added)
+            for (std::int64_t k = 0; k < row; ++k)
+                x[row * one.control + k] += from[row * one.from + k];
+    });
+}
+
+} // namespace bezsoma
