@@ -234,8 +234,8 @@ CORE_ERRORS = (
     Mutant(
         "points of foreign controls kept where own ones belong",
         f"{CORE}/elastic_operator.cpp",
-        "3 * (local < chunk.owned ? local : local - chunk.owned - chunk.foreign);",
-        "3 * (local < chunk.owned ? local : local - chunk.owned);",
+        "(local < chunk.owned ? local : local - chunk.owned - std::ssize(chunk.foreign));",
+        "(local < chunk.owned ? local : local - chunk.owned);",
         MATRIX_FREE,
     ),
     Mutant(

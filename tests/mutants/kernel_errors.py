@@ -111,8 +111,8 @@ OPERATOR = (
         ),
         (
             "what other chunks add to a chunk's controls is dropped",
-            "+= from[row * one.from + k];",
-            "+= 0 * from[row * one.from + k];",
+            "x[row * one.control + k] += from[row * one.from + k];",
+            "x[row * one.control + k] += 0 * from[row * one.from + k];",
         ),
         (
             "shared controls read with their first component for all",
@@ -125,18 +125,13 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "what other chunks add looked for in the wrong place",
-            "push_back({control, from++});",
-            "push_back({control, from});",
+            "owner->added.push_back({control, from++});",
+            "owner->added.push_back({control, from});",
         ),
         (
             "runs of shared controls that are their first control over and over",
             "controls.push_back(run.control + i);",
             "controls.push_back(run.control);",
-        ),
-        (
-            "shared controls given to the owner of others",
-            "while (control >= owner->control + owner->owned)",
-            "while (control > owner->control + owner->owned)",
         ),
     ),
 )
@@ -192,8 +187,8 @@ MIXED = (
         MIXED_FREE,
         (
             "what other chunks found that replaces a chunk's own",
-            "x[row * one.control + k] += from",
-            "x[row * one.control + k] = from",
+            "x[row * one.control + k] += from[row * one.from + k];",
+            "x[row * one.control + k] = from[row * one.from + k];",
         ),
     ),
 )
