@@ -265,7 +265,9 @@ template <int n, int dim = 0, class F> BEZSOMA_INLINE void each_run_of_tet(F &&f
 /// Where a run of controls begins, with `row` numbers a control: see Batches.
 template <class T>
 BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int32_t control, int row = 3) {
-    return (control < 0 ? foreign_end : own) + std::int64_t{control} * row;
+    T *found = (control < 0 ? foreign_end : own) + std::int64_t{control} * row;
+    asm("" : "+r"(found)); // in one register: as a base and an index there are too few of them
+    return found;
 }
 
 /// Vectors that hold own and foreign controls in one area, where no control has a negative number.
