@@ -26,7 +26,7 @@ int controls_inside(int degree, int entity);
 /// A control that another chunk added to: what its owner has to sum.
 struct Addition {
     std::int32_t control;
-    std::int32_t from; // its place among the foreign controls of all chunks
+    std::int32_t from; // its place among the foreign controls of all chunks: fewer than controls
 };
 
 struct Chunk {
@@ -42,8 +42,8 @@ struct Chunks {
     std::int64_t controls;
     std::int64_t foreign; // foreign controls of all chunks
     std::vector<Chunk> parts;
-    std::vector<std::int32_t> local; // (tets, entities): where each run begins in its chunk, own
-                                     // controls first, then the foreign ones
+    std::vector<std::int32_t> local; // (tets, entities): where the run of controls inside each
+                                     // begins in its chunk, own controls first, then the foreign
     std::int32_t largest;            // the most controls that a chunk touches
 };
 

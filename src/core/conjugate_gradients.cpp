@@ -13,6 +13,7 @@ namespace bezsoma {
 namespace {
 
 constexpr int most_beginnings = 3; // from the true residual, before rounding is taken as the reason
+constexpr double deepest = 1e-17;  // relative; further down the recurrence knows nothing of it
 
 } // namespace
 
@@ -79,7 +80,7 @@ Convergence conjugate_gradients(ElasticOperator<double> &k, Search search,
     double norm = true_residual(), before = 0; // `before` is r.z of the last step, 0 at a start
     found.history.push_back(norm / reference);
     for (int i = 0;; ++i) {
-        if (norm <= rtol * reference || i == most) {
+        if (norm <= std::max(rtol, deepest) * reference || i == most) {
             norm = true_residual();
             found.converged = norm <= rtol * reference * (1 + 1e-6);
             found.rounded = !found.converged && ++beginnings > most_beginnings;
@@ -97,6 +98,7 @@ Convergence conjugate_gradients(ElasticOperator<double> &k, Search search,
         const double pq = pieces.sum([&](std::size_t j) { return p[j] * q[j]; });
         if (!(pq > 0 && rz > 0)) {
             found.indefinite = true;
+            found.residual = true_residual() / reference;
             return found;
         }
         const double alpha = rz / pq;

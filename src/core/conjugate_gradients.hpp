@@ -48,7 +48,8 @@ private:
 ///
 /// x (controls, 3) comes in with the prescribed components and a first guess; `reference` is the
 /// norm that residuals are relative to. When the recurrence says that rtol is reached the true
-/// residual is formed; where that has drifted above, the iteration begins anew from it.
+/// residual is formed, which has to reach it to a millionth; where that has drifted above, the
+/// iteration begins anew from it.
 Convergence conjugate_gradients(ElasticOperator<double> &k, Search search,
                                 const std::uint8_t *fixed, const double *f, double *x,
                                 double reference, double rtol, int most, Team &team,

@@ -279,7 +279,11 @@ template <class T> BEZSOMA_INLINE Batches<T> in_one_area(const T *u, T *f) {
 }
 
 /// Reads `rows` numbers at `begin` of eight lanes' runs, in float64, into the rows that `order`
-/// names. Which lanes meet in a register lets every step have its pattern in the instruction.
+/// names. Lanes 0 and 2 share a register, 1 and 3, 4 and 6, 5 and 7, so that every step only moves
+/// pairs of numbers or single ones in between, which is an instruction without a table:
+///
+///   a = x0 y0 z0 w0 x2 y2 z2 w2,  c the same of 4 and 6  ->  even = x0 y0 x2 y2 x4 y4 x6 y6
+///   even, and odd of lanes 1 3 5 7                       ->  x0 x1 x2 x3 x4 x5 x6 x7
 template <int rows>
 BEZSOMA_INLINE void gather_eight(const double *const *from, int begin, const int *order,
                                  Lanes<double, 8> *u) {
@@ -293,15 +297,15 @@ BEZSOMA_INLINE void gather_eight(const double *const *from, int begin, const int
     if constexpr (rows > 1)
         u[order[1]] = __builtin_shufflevector(even, odd, 1, 9, 3, 11, 5, 13, 7, 15);
     if constexpr (rows > 2) {
-        const auto even_above = __builtin_shufflevector(a, c, 2, 3, 6, 7, 10, 11, 14, 15);
-        const auto odd_above = __builtin_shufflevector(b, d, 2, 3, 6, 7, 10, 11, 14, 15);
-        u[order[2]] = __builtin_shufflevector(even_above, odd_above, 0, 8, 2, 10, 4, 12, 6, 14);
+        const auto even_zw = __builtin_shufflevector(a, c, 2, 3, 6, 7, 10, 11, 14, 15);
+        const auto odd_zw = __builtin_shufflevector(b, d, 2, 3, 6, 7, 10, 11, 14, 15);
+        u[order[2]] = __builtin_shufflevector(even_zw, odd_zw, 0, 8, 2, 10, 4, 12, 6, 14);
         if constexpr (rows > 3)
-            u[order[3]] = __builtin_shufflevector(even_above, odd_above, 1, 9, 3, 11, 5, 13, 7, 15);
+            u[order[3]] = __builtin_shufflevector(even_zw, odd_zw, 1, 9, 3, 11, 5, 13, 7, 15);
     }
 }
 
-/// The same for any lanes.
+/// The same for any number of lanes and kind of number.
 template <int rows, class T, int lanes>
 BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *order,
                                   Lanes<T, lanes> *u) {

@@ -226,7 +226,7 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
                                          std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t wide = width(sides), row = 3 * std::int64_t{sides};
-    const std::int64_t own = 3 * chunk.owned * wide, foreign = 3 * std::ssize(chunk.foreign) * wide;
+    const std::int64_t own = 3 * wide * chunk.owned, foreign = 3 * std::ssize(chunk.foreign) * wide;
     const T *u_here = u + row * chunk.control;
     T *f_here = f + row * chunk.control;
     Batches<T> b = batches(c);
@@ -264,9 +264,9 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
             scratch.resize(2 * least);
         Batches<T> b = batches(c);
         b.u = scratch.data();
-        b.u_end = foreign_of(
-            chunk, u, 1,
-            copied(u + 3 * chunk.control, 1, scratch.data(), 1, 3 * std::int64_t{chunk.owned}));
+        b.u_end = foreign_of(chunk, u, 1,
+                             copied(u + 3 * std::int64_t{chunk.control}, 1, scratch.data(), 1,
+                                    3 * std::int64_t{chunk.owned}));
         sums[c] = kernel_.work(b);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Foreign controls of a chunk, between the vectors of a mesh and the area of the chunk: one by one,
-// since runs of all lengths would be branches that no processor foresees.
+// Foreign controls of a chunk, between the vectors of a mesh and the area of the chunk. Control by
+// control: to join neighbours to runs would save little, and their lengths would be branches that
+// no processor foresees.
 #pragma once
 
 #include <cstdint>
@@ -24,10 +25,10 @@ template <class Work> void with_row(std::int64_t row, const Work &work) {
 /// Copies the rows of these controls in x one after another; returns the end of what was written.
 template <class T>
 T *copy_rows(const std::vector<std::int32_t> &controls, const T *x, std::int64_t row, T *to) {
-    with_row(row, [&](auto row) {
+    with_row(row, [&](auto wide) {
         for (const std::int32_t control : controls)
-            for (std::int64_t k = 0; k < row; ++k)
-                *to++ = x[row * control + k];
+            for (std::int64_t k = 0; k < wide; ++k)
+                *to++ = x[wide * control + k];
     });
     return to;
 }
@@ -35,20 +36,20 @@ T *copy_rows(const std::vector<std::int32_t> &controls, const T *x, std::int64_t
 /// Adds what stands one after another to the rows of these controls in x.
 template <class T>
 void add_rows(const std::vector<std::int32_t> &controls, const T *from, T *x, std::int64_t row) {
-    with_row(row, [&](auto row) {
+    with_row(row, [&](auto wide) {
         for (const std::int32_t control : controls)
-            for (std::int64_t k = 0; k < row; ++k)
-                x[row * control + k] += *from++;
+            for (std::int64_t k = 0; k < wide; ++k)
+                x[wide * control + k] += *from++;
     });
 }
 
 /// The same from wherever each addition stands.
 template <class T>
 void add_rows(const std::vector<Addition> &added, const T *from, T *x, std::int64_t row) {
-    with_row(row, [&](auto row) {
+    with_row(row, [&](auto wide) {
         for (const Addition &one : added)
-            for (std::int64_t k = 0; k < row; ++k)
-                x[row * one.control + k] += from[row * one.from + k];
+            for (std::int64_t k = 0; k < wide; ++k)
+                x[wide * one.control + k] += from[wide * one.from + k];
     });
 }
 

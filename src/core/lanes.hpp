@@ -30,10 +30,10 @@ template <class T, int lanes> BEZSOMA_INLINE Lanes<T, lanes> load(const T *from)
 
 /// Four numbers and four others beside each other.
 BEZSOMA_INLINE Lanes<double, 8> load_halves(const double *low, const double *high) {
-#if defined(__AVX512F__) // a load that inserts, where GCC makes two loads and a shuffle
+#if defined(__AVX512F__) // a load that inserts, where GCC would make two loads and a shuffle
     return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_loadu_pd(low)), _mm256_loadu_pd(high),
                               1);
-#else
+#else // for builds of that width on any processor (BEZSOMA_ONE_SET)
     return __builtin_shufflevector(load<double, 4>(low), load<double, 4>(high), 0, 1, 2, 3, 4, 5, 6,
                                    7);
 #endif

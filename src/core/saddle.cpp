@@ -12,6 +12,7 @@ namespace bezsoma {
 namespace {
 
 constexpr int most_beginnings = 20;
+constexpr double deepest = 1e-17; // relative; further down the recurrence knows nothing of the true
 // BiCGStab's residuals leap, also where it converges. This far above the least one so far it begins
 // anew from where that was; where nothing was gained since the last beginning, the square as far.
 constexpr double first_leap = 1e4, last_leap = 1e16;
@@ -189,7 +190,7 @@ Convergence saddle(MixedOperator &form, Search &displacement, PressureInverse &p
     int beginnings = 0;
     found.history.push_back(norm / reference);
     for (int i = 0;; ++i) {
-        if (norm <= problem.rtol * reference || i == problem.most) {
+        if (norm <= std::max(problem.rtol, deepest) * reference || i == problem.most) {
             if (norm > least)
                 it.x = it.best;
             it.residual();

@@ -160,6 +160,18 @@ def test_the_largest_chunks_too(degree: int) -> None:
     np.testing.assert_allclose(moment, stress, atol=1e-12)
 
 
+@pytest.mark.parametrize("degree", DEGREES)
+@pytest.mark.parametrize("tets_at_once", [5, 1 << 12])
+def test_its_diagonal_is_that_of_the_matrix(
+    degree: int, tets_at_once: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("bezsoma.equations.matrix_free.TETS_AT_ONCE", tets_at_once)
+    net = ControlNet(materials(block(cells=(2, 1, 2), irregular=0.3)), degree)
+    found = MatrixFree(net, LAME).diagonal()
+    expected = matrix_of(net).diagonal
+    assert apart(found, expected) < ROUNDING
+
+
 def test_rigid_motions_cost_nothing() -> None:
     turn = np.array([[0, -3.0, 2], [3, 0, -1], [-2, 1, 0]])
     for degree in DEGREES:

@@ -16,6 +16,7 @@ from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.element import lame_constants, moduli
 from bezsoma.equations.forces import forces
 from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.errors import NotConverged
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Polynomial, Precedence, Traction
 from bezsoma.mesh import ControlNet, TetMesh, block
 from bezsoma.solvers import solve
@@ -356,3 +357,12 @@ def test_what_stands_alone_keeps_no_product() -> None:
     assert "kernel" not in B.operator.__dict__
     assert preconditioner(B.operator, B.held).bytes > 0
     assert "kernel" in B.operator.__dict__
+
+
+@pytest.mark.parametrize("rtol", [1e-17, 1e-200])
+def test_an_rtol_below_rounding_ends_at_rounding(rtol: float) -> None:
+    """Far below it the recurrence falls apart: it is left for the true residual before."""
+    with pytest.raises(NotConverged, match="rounding lets them come no further") as caught:
+        solve(cube(3, 3), solver="multigrid", rtol=rtol)
+    assert len(caught.value.history) < 300
+    assert 1e-18 < caught.value.history[-1] < 1e-12

@@ -106,18 +106,18 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "one thread that adds the first number that a chunk found for others everywhere",
-            "x[row * control + k] += *from++;",
-            "x[row * control + k] += *from;",
+            "x[wide * control + k] += *from++;",
+            "x[wide * control + k] += *from;",
         ),
         (
             "what other chunks add to a chunk's controls is dropped",
-            "x[row * one.control + k] += from[row * one.from + k];",
-            "x[row * one.control + k] += 0 * from[row * one.from + k];",
+            "x[wide * one.control + k] += from[wide * one.from + k];",
+            "x[wide * one.control + k] += 0 * from[wide * one.from + k];",
         ),
         (
             "shared controls read with their first component for all",
-            "*to++ = x[row * control + k];",
-            "*to++ = x[row * control];",
+            "*to++ = x[wide * control + k];",
+            "*to++ = x[wide * control];",
         ),
     ),
     *errors_in(
@@ -187,8 +187,8 @@ MIXED = (
         MIXED_FREE,
         (
             "what other chunks found that replaces a chunk's own",
-            "x[row * one.control + k] += from[row * one.from + k];",
-            "x[row * one.control + k] = from[row * one.from + k];",
+            "x[wide * one.control + k] += from[wide * one.from + k];",
+            "x[wide * one.control + k] = from[wide * one.from + k];",
         ),
     ),
 )

@@ -88,7 +88,7 @@ def multigrid(
     start: Floats | None = None,
     most: int = MOST_ITERATIONS,
 ) -> tuple[Floats, list[float]]:
-    """x (c, 3), zero where held, with |b - K x| <= rtol |b|, and the relative residuals.
+    """x (c, 3), zero where held, with |b - K x| <= rtol |b| to a millionth, and the residuals.
 
     From `start`, zero where held, or from zero; |b| is the residual at zero in either case.
     The last residual is formed anew from the equations. Same bits for any number of threads.
@@ -118,7 +118,8 @@ def iterated(
     raise NotConverged(
         f"conjugate gradients {how} after {len(history) - 1} iterations, at {residual:.3g} of the "
         f"residual at zero free displacement; rtol = {rtol:g} was asked for. Very flat tets, thin "
-        "shells or nu close to 1/2 slow them down: look at the mesh (bezsoma mesh info), take a "
-        "larger rtol, a lower degree, or solver='direct' on a small problem",
+        "shells, regions of very unequal stiffness or nu close to 1/2 slow them down: look at the "
+        "mesh (bezsoma mesh info), take a larger rtol, a lower degree, or solver='direct' on a "
+        "small problem",
         history,
     )

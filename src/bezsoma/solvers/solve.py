@@ -223,7 +223,8 @@ def _solved(
         if start is not None:
             start = np.where(equations.held, 0.0, start) / size
         found = method(equations, b, start, rtol, watch)
-        found.x[...] *= size
+        with np.errstate(over="ignore"):  # what is too large for a float is refused as an answer
+            found.x[...] *= size
         return replace(found, method=f"{found.method}, {why}")
 
 
