@@ -233,7 +233,7 @@ int main(int count, char **names) {
             if (!same || !one.found.converged)
                 return 1;
         }
-        if (!survives_a_stop(Mesh(3, 5), *kernels)) {
+        if (!survives_a_stop(Mesh(2, 8), *kernels)) {
             std::printf("%s: a stop left something behind\n", names[which]);
             return 1;
         }
