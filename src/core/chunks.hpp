@@ -26,7 +26,7 @@ int controls_inside(int degree, int entity);
 /// A control that another chunk added to: what its owner has to sum.
 struct Addition {
     std::int32_t control;
-    std::int32_t from; // its place among the foreign controls of all chunks: fewer than controls
+    std::int32_t from; // its place among the foreign controls of all chunks
 };
 
 struct Chunk {

@@ -13,6 +13,7 @@ from bezsoma import _core
 from bezsoma.arrays import Floats, Int32s, Ints
 from bezsoma.bernstein import gradient_products
 from bezsoma.mesh.control_net import ControlNet
+from bezsoma.mesh.topology import determinants, slices
 
 TETS_AT_ONCE = 1 << 12
 """Of which the diagonal is formed in one piece."""
@@ -83,7 +84,7 @@ class MatrixFree:
         return y.reshape(x.shape)
 
     def diagonal(self) -> Floats:
-        """The diagonal of K (c, 3) N/mm, for smoothers and scalings; tets come in pieces.
+        """The diagonal of K (c, 3) N/mm, for smoothers and scalings; keeps nothing of the mesh.
 
             K_ak,ak = sum over tets of V sum_ij w_ij ((lam + mu) g_ik g_jk + mu g_i . g_j)
 
@@ -102,16 +103,13 @@ class MatrixFree:
         products = gradient_products(self.net.degree, 3)
         weights = np.einsum("ijaa->aij", products).reshape(-1, 16)
         found = np.zeros((self.net.count, 3))
-        for begin in range(0, len(mesh.tets), TETS_AT_ONCE):
-            part = slice(begin, begin + TETS_AT_ONCE)
-            g, lame = mesh.gradients[part], self.lame[region[part]]
-            volume = mesh.volumes[part]
+        for part in slices(len(mesh.tets), TETS_AT_ONCE):
+            g, lame = mesh.gradients_of(part), self.lame[region[part]]
+            volume = np.abs(determinants(mesh.points[mesh.tets[part]])) / 6
             alike = np.einsum("t,tik,tjk->tijk", volume * lame.sum(1), g, g)
             across = np.einsum("t,til,tjl->tij", volume * lame[:, 1], g, g)
             of_tets = weights @ (alike + across[..., None]).reshape(-1, 16, 3)
-            controls = self.net.of_tet[part].ravel()
-            for k in range(3):
-                found[:, k] += np.bincount(controls, of_tets[..., k].ravel(), self.net.count)
+            np.add.at(found, self.net.closure(3, part), of_tets)
         return found
 
     def energy(self, x: Floats) -> float:
