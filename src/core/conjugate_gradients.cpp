@@ -13,7 +13,6 @@ namespace bezsoma {
 namespace {
 
 constexpr int most_beginnings = 3; // from the true residual, before rounding is taken as the reason
-constexpr double deepest = 1e-17;  // relative: below, the recurrence has left the true residual
 
 } // namespace
 

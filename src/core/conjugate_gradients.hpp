@@ -11,6 +11,9 @@
 
 namespace bezsoma {
 
+/// Relative residuals of a recurrence below this have left the true one, which is formed instead.
+constexpr double deepest = 1e-17;
+
 struct Convergence {
     std::vector<double> history; // relative residuals as the recurrence has them
     double residual = 0;         // the true one at the end, relative

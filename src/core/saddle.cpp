@@ -12,7 +12,6 @@ namespace bezsoma {
 namespace {
 
 constexpr int most_beginnings = 20;
-constexpr double deepest = 1e-17; // relative: below, the recurrence has left the true residual
 // BiCGStab's residuals leap, also where it converges. This far above the least one so far it begins
 // anew from where that was; where nothing was gained since the last beginning, the square as far.
 constexpr double first_leap = 1e4, last_leap = 1e16;
