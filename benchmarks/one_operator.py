@@ -13,6 +13,7 @@ import peaks
 import problem
 
 from bezsoma import _core
+from bezsoma.arrays import on_lines
 from bezsoma.equations.element import lame_constants
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.mesh.control_net import ControlNet
@@ -34,8 +35,10 @@ def measure(request: dict[str, Any]) -> dict[str, Any]:
         apply = kernel.apply if width == 8 else kernel.apply_single
         limit = peaks.flops(width, threads)
         for sides in request["sides"]:
-            x = np.random.default_rng(1).random((net.count, 3, sides)).astype(KINDS[width])
-            y = np.zeros_like(x)
+            x = on_lines((net.count, 3, sides), KINDS[width])
+            x[...] = np.random.default_rng(1).random(x.shape)
+            y = on_lines(x.shape, x.dtype)
+            y[...] = 0
             moved = counts.least_bytes(degree, len(body.mesh.tets), 3 * net.count, width, sides)
             found = {
                 "width": width,

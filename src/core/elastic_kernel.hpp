@@ -215,14 +215,15 @@ BEZSOMA_INLINE void transpose(Lanes<T, lanes> *rows) {
 /// lines of the cache nearly always, and take more shuffles.
 template <int lanes> inline constexpr int square = lanes < 4 ? lanes : 4;
 
-/// Numbers from one lane's memory after those of another: loads, not shuffles.
-template <class T, int lanes>
-BEZSOMA_INLINE Lanes<T, lanes> joined(const T *const *from, int begin) {
+/// Numbers from the memory of lane l after those of lanes that follow at a distance: loads, not
+/// shuffles. from(l) is where the numbers of a lane begin.
+template <class T, int lanes, class From>
+BEZSOMA_INLINE Lanes<T, lanes> joined(const From &from, int l, int begin) {
     if constexpr (lanes <= square<lanes>) {
-        return load<T, lanes>(*from + begin);
+        return load<T, lanes>(from(l) + begin);
     } else {
-        const auto x = joined<T, lanes / 2>(from, begin);
-        const auto y = joined<T, lanes / 2>(from + lanes / 2, begin);
+        const auto x = joined<T, lanes / 2>(from, l, begin);
+        const auto y = joined<T, lanes / 2>(from, l + lanes / 2, begin);
         if constexpr (lanes == 8)
             return __builtin_shufflevector(x, y, 0, 1, 2, 3, 4, 5, 6, 7);
         else
@@ -278,19 +279,19 @@ template <class T> BEZSOMA_INLINE Batches<T> in_one_area(const T *u, T *f) {
     return places;
 }
 
-/// Reads `rows` numbers at `begin` of eight lanes' runs, in float64, into the rows that `order`
-/// names. Lanes 0 and 2 share a register, 1 and 3, 4 and 6, 5 and 7, so that every step only moves
-/// pairs of numbers or single ones in between, which is an instruction without a table:
+/// Reads `rows` numbers at `begin` of eight lanes' runs, from(l), in float64, into the rows that
+/// `order` names. Lanes 0 and 2 share a register, 1 and 3, 4 and 6, 5 and 7, so that every step
+/// only moves pairs of numbers or single ones in between, which is an instruction without a table:
 ///
 ///   a = x0 y0 z0 w0 x2 y2 z2 w2,  c the same of 4 and 6  ->  even = x0 y0 x2 y2 x4 y4 x6 y6
 ///   even, and odd of lanes 1 3 5 7                       ->  x0 x1 x2 x3 x4 x5 x6 x7
-template <int rows>
-BEZSOMA_INLINE void gather_eight(const double *const *from, int begin, const int *order,
+template <int rows, class From>
+BEZSOMA_INLINE void gather_eight(const From &from, int begin, const int *order,
                                  Lanes<double, 8> *u) {
-    const auto a = load_halves(from[0] + begin, from[2] + begin);
-    const auto b = load_halves(from[1] + begin, from[3] + begin);
-    const auto c = load_halves(from[4] + begin, from[6] + begin);
-    const auto d = load_halves(from[5] + begin, from[7] + begin);
+    const auto halves = [&](int low, int high) BEZSOMA_INLINED {
+        return load_halves(from(low) + begin, from(high) + begin);
+    };
+    const auto a = halves(0, 2), b = halves(1, 3), c = halves(4, 6), d = halves(5, 7);
     const auto even = __builtin_shufflevector(a, c, 0, 1, 4, 5, 8, 9, 12, 13);
     const auto odd = __builtin_shufflevector(b, d, 0, 1, 4, 5, 8, 9, 12, 13);
     u[order[0]] = __builtin_shufflevector(even, odd, 0, 8, 2, 10, 4, 12, 6, 14);
@@ -306,8 +307,8 @@ BEZSOMA_INLINE void gather_eight(const double *const *from, int begin, const int
 }
 
 /// The same for any number of lanes and kind of number.
-template <int rows, class T, int lanes>
-BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *order,
+template <int rows, class T, int lanes, class From>
+BEZSOMA_INLINE void gather_square(const From &from, int begin, const int *order,
                                   Lanes<T, lanes> *u) {
     if constexpr (lanes == 8 && sizeof(T) == 8) {
         gather_eight<rows>(from, begin, order, u);
@@ -315,7 +316,7 @@ BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *or
         Lanes<T, lanes> block[square<lanes>];
 #pragma GCC unroll 4
         for (int l = 0; l < square<lanes>; ++l)
-            block[l] = joined<T, lanes>(from + l, begin);
+            block[l] = joined<T, lanes>(from, l, begin);
         transpose<T, lanes, square<lanes>>(block);
 #pragma GCC unroll 4
         for (int r = 0; r < rows; ++r)
@@ -328,22 +329,30 @@ BEZSOMA_INLINE void gather_square(const T *const *from, int begin, const int *or
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
     each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
-        const T *from[lanes];
+        const int *order = entity_order<n>.row + row;
+        const auto found = [&](int l) BEZSOMA_INLINED {
+            return place(b.u, b.u_end, first[entity * lanes + l]);
+        };
+        if constexpr (rows <= square<lanes>) { // each place where it is read: registers are few
+            gather_square<rows, T, lanes>(found, 0, order, u);
+        } else {
+            const T *places[lanes];
 #pragma GCC unroll 16
-        for (int l = 0; l < lanes; ++l)
-            from[l] = place(b.u, b.u_end, first[entity * lanes + l]);
-        constexpr int left = rows % square<lanes>;
-        int begin = 0;
-        for (; begin < rows - left; begin += square<lanes>)
-            gather_square<square<lanes>, T, lanes>(from, begin, entity_order<n>.row + row + begin,
-                                                   u);
-        if constexpr (left > 0)
-            gather_square<left, T, lanes>(from, begin, entity_order<n>.row + row + begin, u);
+            for (int l = 0; l < lanes; ++l)
+                places[l] = found(l);
+            const auto from = [&](int l) BEZSOMA_INLINED { return places[l]; };
+            constexpr int left = rows % square<lanes>;
+            int begin = 0;
+            for (; begin < rows - left; begin += square<lanes>)
+                gather_square<square<lanes>, T, lanes>(from, begin, order + begin, u);
+            if constexpr (left > 0)
+                gather_square<left, T, lanes>(from, begin, order + begin, u);
+        }
     });
 }
 
 /// Adds `rows` numbers of every lane, 1, 2 or 4, at `begin` of its run, lane after lane: tets of a
-/// batch share controls. Lanes are parted by way of memory, which is free where shuffles are not.
+/// batch share controls. Lanes are parted by way of memory, or as the compiler likes better.
 template <int rows, class T, int lanes>
 BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
                                    const Lanes<T, lanes> *f) {
@@ -381,6 +390,35 @@ BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
             scatter_square<pairs, T, lanes>(to, begin, order + begin, f);
         if constexpr (left > pairs)
             scatter_square<1, T, lanes>(to, begin + pairs, order + begin + pairs, f);
+    });
+}
+
+/// The same where a control has four numbers in f, so that a whole register moves at once; foreign
+/// controls stand before the own ones, at numbers below zero.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void scatter_padded(T *f, const std::int32_t *first, const Lanes<T, lanes> *forces) {
+    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
+        T *to[lanes];
+#pragma GCC unroll 16
+        for (int l = 0; l < lanes; ++l)
+            to[l] = f + 4 * std::int64_t{first[entity * lanes + l]};
+        const int *order = entity_order<n>.row + row;
+#pragma GCC unroll 4
+        for (int c = 0; c < rows / 3; ++c)
+#pragma GCC unroll 4
+            for (int part = 0; part < lanes; part += 4) { // four lanes are loaded, not extracted
+                Lanes<T, 4> block[4] = {};
+#pragma GCC unroll 3
+                for (int k = 0; k < 3; ++k)
+                    block[k] =
+                        load<T, 4>(reinterpret_cast<const T *>(forces + order[3 * c + k]) + part);
+                transpose<T, 4>(block);
+#pragma GCC unroll 4
+                for (int l = 0; l < 4; ++l) {
+                    T *at = to[part + l] + 4 * c;
+                    store<T, 4>(at, load<T, 4>(at) + block[l]);
+                }
+            }
     });
 }
 
@@ -482,7 +520,8 @@ BEZSOMA_INLINE void forces_of_moments(const Batch<T, lanes> &tet,
     });
 }
 
-/// f[a] = K u[a] on every lane's tet: both by position, three components each.
+/// f[a] = K u[a] on every lane's tet: both by position, three components each. They may be the
+/// same.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void elastic_forces(const Batch<T, lanes> &tet, const Lanes<T, lanes> *u,
                                    Lanes<T, lanes> *f, const Ahead<n, T, lanes> &ahead) {

@@ -32,6 +32,20 @@ std::int64_t first_point(const Chunk &chunk) {
     return 3 * (chunk.control + chunk.foreign_begin + std::ssize(chunk.foreign));
 }
 
+/// Registers that begin where a line of the cache does lie in one line.
+constexpr std::size_t line = 64;
+
+/// Two numbers anywhere in memory, in one register.
+template <class T> struct Two {
+    typedef T type __attribute__((vector_size(2 * sizeof(T)), aligned(sizeof(T)), may_alias));
+};
+
+/// The first number that begins a line; up to `line` bytes are left before it.
+template <class T> T *on_line(std::vector<T> &v) {
+    const auto past = reinterpret_cast<std::uintptr_t>(v.data()) % line;
+    return v.data() + (line - past) % line / sizeof(T);
+}
+
 } // namespace
 
 std::int64_t controls_of_chunk(const ElasticTets &tets) {
@@ -146,18 +160,16 @@ void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk
 template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
     const bool alone = team_.size() == 1;
     const std::int64_t row = 3 * std::int64_t{sides};
-    foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)));
+    foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)) + line);
+    T *const foreign = on_line(foreign_);
     const std::size_t parts = chunks_.parts.size();
     team_.run(parts, [&](std::size_t c, std::size_t thread) {
-        const Chunk &chunk = chunks_.parts[c];
-        T *foreign = foreign_.data() + (alone ? 0 : row * chunk.foreign_begin);
-        forces_of_chunk(c, u, f, foreign, sides, scratch_[thread]);
-        if (alone)
-            add_rows(chunk.foreign, foreign, f, row);
+        const std::int64_t begin = alone ? 0 : row * chunks_.parts[c].foreign_begin;
+        forces_of_chunk(c, u, f, foreign + begin, sides, scratch_[thread]);
     });
     if (!alone)
         team_.run(parts, [&](std::size_t c, std::size_t) {
-            add_rows(chunks_.parts[c].added, foreign_.data(), f, row);
+            add_rows(chunks_.parts[c].added, foreign, f, row);
         });
 }
 
@@ -180,7 +192,8 @@ template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
             .u = nullptr,
             .u_end = nullptr,
             .f = nullptr,
-            .f_end = nullptr};
+            .f_end = nullptr,
+            .into = nullptr};
 }
 
 namespace {
@@ -191,6 +204,12 @@ template <class T> T *copied(const T *x, std::int64_t from, T *y, std::int64_t t
     if (from == to) {
         for (std::int64_t i = 0; i < n * to; ++i)
             y[i] = x[i];
+    } else if (from == 4 && to == 3) { // forces of one side, which is most of what is copied
+        for (std::int64_t i = 0; i < n; ++i) {
+            using Pair = typename Two<T>::type;
+            *reinterpret_cast<Pair *>(y + 3 * i) = *reinterpret_cast<const Pair *>(x + 4 * i);
+            y[3 * i + 2] = x[4 * i + 2];
+        }
     } else {
         for (std::int64_t i = 0; i < n; ++i) {
             for (std::int64_t k = 0; k < both; ++k)
@@ -221,37 +240,52 @@ template <class T> bool ElasticOperator<T>::in_place(const Chunk &chunk, int sid
     return width(sides) == sides && 3 * after * sides >= std::int64_t{padding};
 }
 
+/// Forces of a chunk's tets: on own controls in f, on foreign ones added to f by a thread that is
+/// alone, or else in f_foreign.
 template <class T>
 void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
                                          std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
-    const std::int64_t wide = width(sides), row = 3 * std::int64_t{sides};
-    const std::int64_t own = 3 * wide * chunk.owned, foreign = 3 * std::ssize(chunk.foreign) * wide;
-    const T *u_here = u + row * chunk.control;
-    T *f_here = f + row * chunk.control;
+    const std::int64_t own = chunk.owned, foreign = std::ssize(chunk.foreign), wide = width(sides);
+    const std::int64_t row = 3 * std::int64_t{sides}, row_u = 3 * wide;
+    const std::int64_t row_f = sides == 1 ? kernel_.row : row_u;
+    const bool u_in_place = in_place(chunk, sides), f_in_place = u_in_place && row_f == row;
+    const std::size_t length = size(row_u * chunks_.largest) + padding;
+    if (const auto least = length + size(row_f * chunks_.largest) + 2 * line;
+        scratch.size() < least)
+        scratch.resize(least);
     Batches<T> b = batches(c);
-    b.u = u_here, b.f = f_here, b.f_end = f_foreign + foreign;
-    const bool direct = in_place(chunk, sides);
-    const std::size_t length = size(own + foreign) + padding;
-    if (scratch.size() < 2 * length)
-        scratch.resize(2 * (size(3 * chunks_.largest * wide) + padding));
-    T *next = scratch.data();
-    if (!direct) {
-        b.u = next;
-        next = copied(u_here, sides, next, wide, 3 * std::int64_t{chunk.owned});
-        b.f = scratch.data() + length;
-        b.f_end = b.f + own + foreign;
+    b.into = f + row * chunk.control;
+    T *next = on_line(scratch);
+    T *area = next + (length + line - 1) / line * line;
+    b.u = u + row * chunk.control;
+    if (!u_in_place) {
+        next = copied(b.u, sides, next, wide, 3 * own);
+        b.u = next - row_u * own;
     }
     b.u_end = foreign_of(chunk, u, sides, next);
-    std::fill_n(b.f_end - foreign, foreign, T{});
+    T *const foreign_forces = f_in_place ? f_foreign : area;
+    b.f_end = foreign_forces + row_f * foreign;
+    b.f = f_in_place ? b.into : b.f_end;
+    std::fill_n(foreign_forces, row_f * foreign, T{});
     if (sides == 1)
         kernel_.apply(b);
     else
         kernel_.apply_many(b, static_cast<int>(wide));
-    if (!direct) {
-        copied(b.f, wide, f_here, sides, 3 * std::int64_t{chunk.owned});
-        copied(b.f + own, wide, f_foreign, sides, 3 * std::ssize(chunk.foreign));
+    const bool alone = team_.size() == 1;
+    const T *found = foreign_forces;
+    std::int64_t row_found = row_f;
+    if (!f_in_place) {
+        const std::int64_t parts = sides == 1 ? 1 : 3; // of a row, padded each
+        copied(b.f, row_f / parts, b.into, row / parts, parts * own);
+        if (!alone || sides > 1) {
+            copied(found, row_f / parts, f_foreign, row / parts, parts * foreign);
+            found = f_foreign;
+            row_found = row;
+        }
     }
+    if (alone)
+        add_rows(chunk.foreign, found, row_found, f, row);
 }
 
 template <class T> double ElasticOperator<T>::work(const T *u) {

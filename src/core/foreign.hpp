@@ -32,13 +32,19 @@ T *copy_rows(const std::vector<std::int32_t> &controls, const T *x, std::int64_t
     return to;
 }
 
-/// Adds what stands one after another to the rows of these controls in x.
+/// Adds what stands one after another, `from_row` numbers each, to the rows of these controls in x.
 template <class T>
-void add_rows(const std::vector<std::int32_t> &controls, const T *from, T *x, std::int64_t row) {
+void add_rows(const std::vector<std::int32_t> &controls, const T *from, std::int64_t from_row, T *x,
+              std::int64_t row) {
     with_row(row, [&](auto wide) {
-        for (const std::int32_t control : controls)
+        const T *next = from; // of its own: what is captured is read anew at every number
+        T *const all = x;
+        for (const std::int32_t control : controls) {
+            T *to = all + wide * control;
             for (std::int64_t k = 0; k < wide; ++k)
-                x[wide * control + k] += *from++;
+                to[k] += next[k];
+            next += from_row;
+        }
     });
 }
 

@@ -16,9 +16,11 @@ constexpr std::int64_t apart = 4;
 /// first (batches, entities, lanes): the control at which each entity's run begins, among the own
 /// ones of the chunk, or below zero, counted from the end of its foreign ones; geometry (batches,
 /// 9, lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes); lame (regions, 2): lambda, mu.
-/// u, f (own controls, 3), u_end, f_end the ends of (foreign controls, 3). Past both parts of u 16
-/// numbers may be read but are not used. Own forces are cleared when a batch first meets them, met
-/// (batches,) being one past the own controls met so far; foreign ones are added to.
+/// u (own controls, 3), f (own controls, Kernel::row), u_end, f_end the ends of the same of foreign
+/// controls. Past both parts of u 16 numbers may be read but are not used. Own forces are cleared
+/// when a stretch first meets them, met (batches,) being one past the own controls met so far;
+/// foreign ones are added to. `into` is where own forces go in the end: f, or what is called for
+/// ahead so that they can be copied there.
 template <class T> struct Batches {
     std::int64_t count;
     const std::int32_t *first;
@@ -28,6 +30,7 @@ template <class T> struct Batches {
     const T *lame;
     const T *u, *u_end;
     T *f, *f_end;
+    T *into;
 };
 
 /// A vertex, edge, face or interior with the run of controls inside it.
@@ -63,7 +66,11 @@ struct BlockKernel {
 
 /// What is done on batches. apply_many takes several right-hand sides beside each other, u and f
 /// (controls, 3, sides): lanes are sides there, and batches are read tet by tet.
+///
+/// row: the numbers that `apply` takes a control to have in f, 3 or, as a whole register moves at
+/// once, 4. Then foreign controls have to end where own ones begin.
 template <class T> struct Kernel {
+    int row;
     void (*apply)(const Batches<T> &);
     void (*apply_many)(const Batches<T> &, int sides);
     double (*work)(const Batches<T> &); // sum over tets of int tau : eps

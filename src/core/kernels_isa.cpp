@@ -77,24 +77,39 @@ BEZSOMA_INLINE void call_batch(const Batches<T> &b, std::int64_t i) {
         __builtin_prefetch(places + k);
 }
 
-/// Clears the own forces that batch i is the first to meet.
-template <class T> BEZSOMA_INLINE void clear(const Batches<T> &b, std::int64_t i, int row) {
-    const std::int64_t begin = i > 0 ? b.met[i - 1] : 0;
-    for (std::int64_t k = begin * row; k < std::int64_t{b.met[i]} * row; ++k)
-        b.f[k] = 0;
+/// Clears the own forces, of `row` numbers a control, that the stretch from batch i on is the first
+/// to meet: so many numbers at once, or as many as the compiler likes.
+template <int at_once = 0, class T>
+BEZSOMA_INLINE void clear(const Batches<T> &b, std::int64_t i, std::int64_t row) {
+    const std::int64_t begin = (i > 0 ? b.met[i - 1] : 0) * row, end = next_stretch(b, i) * row;
+    if constexpr (at_once > 0)
+        for (std::int64_t k = begin; k < end; k += at_once)
+            store<T, at_once>(b.f + k, Lanes<T, at_once>{});
+    else
+        for (std::int64_t k = begin; k < end; ++k)
+            b.f[k] = 0;
 }
 
+/// Numbers of a control in `Batches::f`: from degree 3 on most runs fill registers by themselves,
+/// and to copy forces from rows of four would take more than it saves.
+template <int n, int lanes> constexpr int row_of_control = n <= 2 && lanes >= 4 ? 4 : 3;
+
 template <int n, class T, int lanes> void apply(const Batches<T> &b) {
-    Lanes<T, lanes> u[3 * controls(n)], f[3 * controls(n)];
+    Lanes<T, lanes> x[3 * controls(n)]; // displacements, then forces
+    constexpr int row = row_of_control<n, lanes>;
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
         call_batch<n, T, lanes>(b, i + 2);
-        clear(b, i, 3);
-        gather<n, T, lanes>(b, first, u);
+        if (i % apart == 0)
+            clear<row == 4 ? 4 : 0>(b, i, row);
+        gather<n, T, lanes>(b, first, x);
         const std::int64_t next = 3 * next_stretch(b, i) + i % apart * called<n, T, lanes>;
-        elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), u, f,
-                                    {b.u + next, b.f + next});
-        scatter<n, T, lanes>(b, first, f);
+        elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), x, x,
+                                    {b.u + next, b.into + next});
+        if constexpr (row == 4)
+            scatter_padded<n, T, lanes>(b.f, first, x);
+        else
+            scatter<n, T, lanes>(b, first, x);
     }
 }
 
@@ -114,9 +129,10 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
 
 template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
     using R = Lanes<T, lanes>;
-    R u[3 * controls(n)], f[3 * controls(n)];
+    R x[3 * controls(n)]; // displacements, then forces
     for (std::int64_t i = 0; i < b.count; ++i) {
-        clear(b, i, 3 * sides);
+        if (i % apart == 0)
+            clear(b, i, 3 * sides);
         const Batch<T, lanes> all = batch_of_tets<n, T, lanes>(b, i);
         const std::int64_t stretch =
             3 * next_stretch(b, i) * sides + i % apart * lanes * called<n, T, lanes>;
@@ -134,16 +150,16 @@ template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int si
                     const T *from = place(b.u, b.u_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
-                        u[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
+                        x[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
                 });
-                elastic_forces<n, T, lanes>(tet, u, f, {b.u + next, b.f + next});
+                elastic_forces<n, T, lanes>(tet, x, x, {b.u + next, b.f + next});
                 each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     T *to = place(b.f, b.f_end, first[entity * lanes + lane], 3 * sides);
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
                         store<T, lanes>(to + r * sides + side,
                                         load<T, lanes>(to + r * sides + side) +
-                                            f[entity_order<n>.row[row + r]]);
+                                            x[entity_order<n>.row[row + r]]);
                 });
             }
         }
@@ -154,7 +170,8 @@ constexpr int lanes64 = BEZSOMA_BYTES / 8, lanes32 = BEZSOMA_BYTES / 4;
 
 template <int n, class T, int lanes> static constexpr Kernel<T> kernel_of_degree() {
     if constexpr (n <= BEZSOMA_HIGHEST_DEGREE)
-        return {apply<n, T, lanes>, apply_many<n, T, lanes>, work<n, T, lanes>};
+        return {row_of_control<n, lanes>, apply<n, T, lanes>, apply_many<n, T, lanes>,
+                work<n, T, lanes>};
     else
         return {};
 }

@@ -156,8 +156,8 @@ CORE_ERRORS = (
     Mutant(
         "a lane that reads its neighbour's controls",
         f"{CORE}/elastic_kernel.hpp",
-        "from[l] = place(b.u, b.u_end, first[entity * lanes + l]);",
-        "from[l] = place(b.u, b.u_end, first[entity * lanes + l / 2]);",
+        "return place(b.u, b.u_end, first[entity * lanes + l]);",
+        "return place(b.u, b.u_end, first[entity * lanes + l / 2]);",
         MATRIX_FREE,
     ),
     Mutant(
@@ -170,8 +170,8 @@ CORE_ERRORS = (
     Mutant(
         "forces of the call before that are not cleared",
         f"{CORE}/kernels_isa.cpp",
-        "k < std::int64_t{b.met[i]} * row; ++k)",
-        "k < std::int64_t{b.met[i]} * row - 3; ++k)",
+        "end = next_stretch(b, i) * row;",
+        "end = next_stretch(b, i) * row - 4;",
         MATRIX_FREE,
     ),
     Mutant(

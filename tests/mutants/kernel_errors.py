@@ -47,13 +47,23 @@ OPERATOR = (
         ),
         (
             "eight lanes of which one takes what is another's",
-            "load_halves(from[5] + begin, from[7] + begin)",
-            "load_halves(from[5] + begin, from[6] + begin)",
+            "halves(5, 7);",
+            "halves(5, 6);",
         ),
         (
             "a row left over that is scattered as the first of its run",
             "scatter_square<1, T, lanes>(to, begin + pairs, order + begin + pairs, f);",
             "scatter_square<1, T, lanes>(to, begin + pairs, order + begin, f);",
+        ),
+        (
+            "forces in rows of four that replace those of the tets before",
+            "store<T, 4>(at, load<T, 4>(at) + block[l]);",
+            "store<T, 4>(at, block[l]);",
+        ),
+        (
+            "the later four lanes added to the places of the first",
+            "to[part + l] + 4 * c;",
+            "to[l] + 4 * c;",
         ),
         (
             "work with one shear's sign turned",
@@ -91,8 +101,13 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "forces on shared controls kept from the call before",
-            "std::fill_n(b.f_end - foreign, foreign, T{});",
+            "std::fill_n(foreign_forces, row_f * foreign, T{});",
             ";",
+        ),
+        (
+            "a last own control whose forces stay in rows of four",
+            "copied(b.f, row_f / parts, b.into, row / parts, parts * own);",
+            "copied(b.f, row_f / parts, b.into, row / parts, parts * own - 1);",
         ),
         ("tets of twice their volume", "std::abs(det) / 6", "std::abs(det) / 3"),
         (
@@ -106,8 +121,8 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "one thread that adds the first number that a chunk found for others everywhere",
-            "x[wide * control + k] += *from++;",
-            "x[wide * control + k] += *from;",
+            "to[k] += next[k];",
+            "to[k] += next[0];",
         ),
         (
             "what other chunks add to a chunk's controls is dropped",
