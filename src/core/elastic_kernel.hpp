@@ -215,8 +215,8 @@ BEZSOMA_INLINE void transpose(Lanes<T, lanes> *rows) {
 /// lines of the cache nearly always, and take more shuffles.
 template <int lanes> inline constexpr int square = lanes < 4 ? lanes : 4;
 
-/// Numbers from the memory of lane l after those of lanes that follow at a distance: loads, not
-/// shuffles. from(l) is where the numbers of a lane begin.
+/// Numbers of lane l and of every fourth lane after it, side by side: loads, not shuffles. from(l)
+/// is where the numbers of a lane begin.
 template <class T, int lanes, class From>
 BEZSOMA_INLINE Lanes<T, lanes> joined(const From &from, int l, int begin) {
     if constexpr (lanes <= square<lanes>) {
@@ -352,7 +352,7 @@ BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes
 }
 
 /// Adds `rows` numbers of every lane, 1, 2 or 4, at `begin` of its run, lane after lane: tets of a
-/// batch share controls. Lanes are parted by way of memory, or as the compiler likes better.
+/// batch share controls. Lanes are parted by way of memory; a compiler may extract them instead.
 template <int rows, class T, int lanes>
 BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
                                    const Lanes<T, lanes> *f) {

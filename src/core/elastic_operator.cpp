@@ -165,7 +165,7 @@ template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
     const std::size_t parts = chunks_.parts.size();
     team_.run(parts, [&](std::size_t c, std::size_t thread) {
         const std::int64_t begin = alone ? 0 : row * chunks_.parts[c].foreign_begin;
-        forces_of_chunk(c, u, f, foreign + begin, sides, scratch_[thread]);
+        forces_of_chunk(c, u, f, foreign + begin, sides, alone, scratch_[thread]);
     });
     if (!alone)
         team_.run(parts, [&](std::size_t c, std::size_t) {
@@ -234,7 +234,7 @@ T *ElasticOperator<T>::foreign_of(const Chunk &chunk, const T *u, int sides, T *
     return to;
 }
 
-/// Whether a chunk may work on its part of u and f itself: a gather may read past its end.
+/// Whether a chunk may read its part of u itself: a gather may read past its end.
 template <class T> bool ElasticOperator<T>::in_place(const Chunk &chunk, int sides) const {
     const std::int64_t after = chunks_.controls - chunk.control - chunk.owned;
     return width(sides) == sides && 3 * after * sides >= std::int64_t{padding};
@@ -244,7 +244,7 @@ template <class T> bool ElasticOperator<T>::in_place(const Chunk &chunk, int sid
 /// alone, or else in f_foreign.
 template <class T>
 void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
-                                         std::vector<T> &scratch) {
+                                         bool alone, std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t own = chunk.owned, foreign = std::ssize(chunk.foreign), wide = width(sides);
     const std::int64_t row = 3 * std::int64_t{sides}, row_u = 3 * wide;
@@ -272,13 +272,12 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
         kernel_.apply(b);
     else
         kernel_.apply_many(b, static_cast<int>(wide));
-    const bool alone = team_.size() == 1;
     const T *found = foreign_forces;
     std::int64_t row_found = row_f;
     if (!f_in_place) {
-        const std::int64_t parts = sides == 1 ? 1 : 3; // of a row, padded each
+        const std::int64_t parts = sides == 1 ? 1 : 3; // of a row: padding ends each
         copied(b.f, row_f / parts, b.into, row / parts, parts * own);
-        if (!alone || sides > 1) {
+        if (!alone || wide != sides) {
             copied(found, row_f / parts, f_foreign, row / parts, parts * foreign);
             found = f_foreign;
             row_found = row;
@@ -295,7 +294,7 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
         auto &scratch = scratch_[thread];
         if (const auto least = size(3 * std::int64_t{chunks_.largest}) + padding;
             scratch.size() < least)
-            scratch.resize(2 * least);
+            scratch.resize(least);
         Batches<T> b = batches(c);
         b.u = scratch.data();
         b.u_end = foreign_of(chunk, u, 1,

@@ -68,7 +68,7 @@ private:
     Batches<T> batches(std::size_t chunk) const;
     T *foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const;
     bool in_place(const Chunk &chunk, int sides) const;
-    void forces_of_chunk(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides,
+    void forces_of_chunk(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides, bool alone,
                          std::vector<T> &scratch);
 
     Kernel<T> kernel_;
@@ -82,7 +82,8 @@ private:
     std::vector<T> geometry_;             // (batches, 9, lanes), or none
     std::vector<T> points_;               // of each chunk foreign, own (controls, 3), or none
     std::vector<T> lame_;                 // (regions + 1, 2), the last row zero
-    std::vector<T> foreign_;              // (foreign controls, 3, sides): of all chunks, or of one
+    std::vector<T> foreign_;              // (foreign controls, 3, sides) of all chunks, or of one,
+                                          // from a line of the cache on
     std::vector<std::vector<T>> scratch_; // a thread each
 };
 

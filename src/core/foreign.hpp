@@ -37,7 +37,7 @@ template <class T>
 void add_rows(const std::vector<std::int32_t> &controls, const T *from, std::int64_t from_row, T *x,
               std::int64_t row) {
     with_row(row, [&](auto wide) {
-        const T *next = from; // of its own: what is captured is read anew at every number
+        const T *next = from; // copies: what is captured is loaded anew after every store
         T *const all = x;
         for (const std::int32_t control : controls) {
             T *to = all + wide * control;

@@ -19,8 +19,8 @@ constexpr std::int64_t apart = 4;
 /// u (own controls, 3), f (own controls, Kernel::row), u_end, f_end the ends of the same of foreign
 /// controls. Past both parts of u 16 numbers may be read but are not used. Own forces are cleared
 /// when a stretch first meets them, met (batches,) being one past the own controls met so far;
-/// foreign ones are added to. `into` is where own forces go in the end: f, or what is called for
-/// ahead so that they can be copied there.
+/// foreign ones are added to. `into` is where own forces go in the end, f itself or what they are
+/// copied to: Kernel::apply calls for it ahead.
 template <class T> struct Batches {
     std::int64_t count;
     const std::int32_t *first;
@@ -67,8 +67,8 @@ struct BlockKernel {
 /// What is done on batches. apply_many takes several right-hand sides beside each other, u and f
 /// (controls, 3, sides): lanes are sides there, and batches are read tet by tet.
 ///
-/// row: the numbers that `apply` takes a control to have in f, 3 or, as a whole register moves at
-/// once, 4. Then foreign controls have to end where own ones begin.
+/// row: the numbers that `apply` takes a control to have in f. 3; or 4, so that a whole register
+/// moves at once: then foreign controls end where own ones begin, at f.
 template <class T> struct Kernel {
     int row;
     void (*apply)(const Batches<T> &);

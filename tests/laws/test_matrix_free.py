@@ -240,8 +240,9 @@ def test_what_is_read_beyond_a_run_is_never_used() -> None:
             assert found.tolist() == reached.tolist()
 
 
-def test_applied_again_it_gives_the_same_bits() -> None:
-    net = ControlNet(materials(block(cells=(6, 5, 5), irregular=0.3)), 3)
+@pytest.mark.parametrize("degree", CHUNKED)
+def test_applied_again_it_gives_the_same_bits(degree: int) -> None:
+    net = ControlNet(materials(block(cells=CHUNKED[degree], irregular=0.3)), degree)
     operator = MatrixFree(net, LAME, 2)
     u = vectors(net, 4)
     first, single = operator @ u[..., 0], operator.single(u.astype(np.float32))
@@ -252,9 +253,9 @@ def test_applied_again_it_gives_the_same_bits() -> None:
 
 
 def test_what_forces_held_before_does_not_matter() -> None:
-    """Forces are cleared piece by piece, where a batch first meets them: none is forgotten."""
-    for degree in (1, 2, 3, 4, 6):
-        net = ControlNet(materials(block(cells=(5, 4, 4), irregular=0.3)), degree)
+    """Forces are cleared piece by piece, before they are first met: none is forgotten."""
+    for degree, cells in CHUNKED.items():
+        net = ControlNet(materials(block(cells=cells, irregular=0.3)), degree)
         operator = MatrixFree(net, LAME, 2)
         for sides in (1, 3, 8):
             u = vectors(net, sides)
