@@ -32,19 +32,10 @@ std::int64_t first_point(const Chunk &chunk) {
     return 3 * (chunk.control + chunk.foreign_begin + std::ssize(chunk.foreign));
 }
 
-/// Registers that begin where a line of the cache does lie in one line.
-constexpr std::size_t line = 64;
-
 /// Two numbers anywhere in memory, in one register.
 template <class T> struct Two {
     typedef T type __attribute__((vector_size(2 * sizeof(T)), aligned(sizeof(T)), may_alias));
 };
-
-/// The first number that begins a line; up to `line` bytes are left before it.
-template <class T> T *on_line(std::vector<T> &v) {
-    const auto past = reinterpret_cast<std::uintptr_t>(v.data()) % line;
-    return v.data() + (line - past) % line / sizeof(T);
-}
 
 } // namespace
 
@@ -160,8 +151,9 @@ void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk
 template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
     const bool alone = team_.size() == 1;
     const std::int64_t row = 3 * std::int64_t{sides};
-    foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)) + line);
-    T *const foreign = on_line(foreign_);
+    foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)) +
+                    cache_line / sizeof(T));
+    T *const foreign = on_line(foreign_.data());
     const std::size_t parts = chunks_.parts.size();
     team_.run(parts, [&](std::size_t c, std::size_t thread) {
         const std::int64_t begin = alone ? 0 : row * chunks_.parts[c].foreign_begin;
@@ -251,13 +243,12 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
     const std::int64_t row_f = sides == 1 ? kernel_.row : row_u;
     const bool u_in_place = in_place(chunk, sides), f_in_place = u_in_place && row_f == row;
     const std::size_t length = size(row_u * chunks_.largest) + padding;
-    if (const auto least = length + size(row_f * chunks_.largest) + 2 * line;
+    if (const auto least = length + size(row_f * chunks_.largest) + 2 * cache_line / sizeof(T);
         scratch.size() < least)
         scratch.resize(least);
     Batches<T> b = batches(c);
     b.into = f + row * chunk.control;
-    T *next = on_line(scratch);
-    T *area = next + (length + line - 1) / line * line;
+    T *next = on_line(scratch.data()), *const area = on_line(next + length);
     b.u = u + row * chunk.control;
     if (!u_in_place) {
         next = copied(b.u, sides, next, wide, 3 * own);

@@ -35,4 +35,13 @@ template <class T> std::vector<T> large(std::size_t n) {
     return v;
 }
 
+/// Bytes of a line of the cache. A register that begins where one does lies in one line.
+constexpr std::size_t cache_line = 64;
+
+/// The first number from this one on that begins a line: fewer numbers on than a line has.
+template <class T> T *on_line(T *from) {
+    const auto past = reinterpret_cast<std::uintptr_t>(from) % cache_line;
+    return from + (cache_line - past) % cache_line / sizeof(T);
+}
+
 } // namespace bezsoma

@@ -178,7 +178,7 @@ template <class T>
 double PointwiseOperator<T>::on_chunk(std::size_t part, const Work &work, std::vector<T> &scratch) {
     const std::size_t u = u_.longest(), p = p_ ? p_->longest() : 0;
     const std::int64_t batch = scratch_of_pointwise(rule_.rule().controls, lanes_);
-    scratch.resize(3 * (u + p) + size(batch) + 64 / sizeof(T));
+    scratch.resize(3 * (u + p) + size(batch) + cache_line / sizeof(T));
     T *own_u = scratch.data(), *own_du = own_u + u, *own_f = own_du + u;
     T *own_p = own_f + u, *own_dp = own_p + p, *own_g = own_dp + p, *end = own_g + p;
     u_.read(part, work.at.u, own_u);
@@ -191,9 +191,7 @@ double PointwiseOperator<T>::on_chunk(std::size_t part, const Work &work, std::v
     }
     std::fill(own_f, own_p, T{});
     std::fill(own_g, end, T{});
-    // Rows of lanes begin where a register's line of the cache does.
-    const auto past = reinterpret_cast<std::uintptr_t>(end) % 64;
-    end += (64 - past) % 64 / sizeof(T);
+    end = on_line(end); // where rows of lanes begin
     double sum = 0;
     extremes_[part] = nothing_seen();
     for (std::size_t g = group_[part]; g < group_[part + 1]; ++g) {
