@@ -11,6 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import comb
 
+WRITTEN_OUT = 6
+"""The highest degree whose ladder is (BEZSOMA_LADDER)."""
+
 
 @dataclass(frozen=True)
 class Counts:
@@ -35,21 +38,30 @@ def of_tet(degree: int) -> Counts:
         stress       trace, scales, 6 components:          12 mul  8 add, 14 with pairs
         forces       6 scales, 3 x 4 sums of three products, 3 x 3 of them onto a sum:
                                                            42 mul 33 add, 42 with pairs
+        from degree 3 on 6 scales, 3 x 3 sums of three products, their sums, and 3 x 3 sums
+        onto others:                                       33 mul 33 add, 48 with pairs
+
+    Factors of one and sums onto zero, which are about as many, are not told apart.
 
     and the ladder from level m = n - 1 down, for each of six components: 3 + 4 additions for each
-    control of the level below and one product for each of this level, which an addition pairs with
-    above level 0; last 3 sums for each control.
+    control of the level below and one product for each of this level, which an addition pairs with.
+    The lowest level's factor is one, and is left out, as are those of the corners of the highest
+    where its controls are written out for the compiler. Last 3 sums for each control.
 
-    >>> of_tet(1).flops == 9 + 45 + 20 + 6 + 75 + 12
+    >>> of_tet(1).flops == 9 + 45 + 20 + 75 + 12
+    True
+    >>> of_tet(2).flops == 4 * (9 + 45 + 20 + 75) + 6 * 7 + 30
     True
     """
     points = controls(degree - 1)
     below = sum(controls(level) for level in range(degree - 1))
-    levels = sum(controls(level) for level in range(degree))
-    ladder = 6 * (7 * below + levels)
+    levels = sum(controls(level) for level in range(1, degree))
+    corners = 4 if 2 <= degree <= WRITTEN_OUT else 0
+    ladder = 6 * (7 * below + levels - corners)
     scatter = 3 * controls(degree)
-    flops = points * (9 + 45 + 20 + 75) + ladder + scatter
-    instructions = points * (9 + 27 + 14 + 42) + 6 * (7 * below + 1) + scatter
+    forces, paired = (75, 42) if degree <= 2 else (66, 48)
+    flops = points * (9 + 45 + 20 + forces) + ladder + scatter
+    instructions = points * (9 + 27 + 14 + paired) + 6 * 7 * below + scatter
     return Counts(flops, instructions)
 
 

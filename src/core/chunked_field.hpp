@@ -83,16 +83,16 @@ public:
             visit(chunk.tet + i, batch_[part] + i / lanes_, i % lanes_);
     }
 
-    /// Where each entity's run begins in its chunk, (batches, entities, lanes), from
+    /// Where each entity's run begins in its chunk, (batches, entities, lanes), in numbers, from
     /// `Chunks::local`. Lanes without a tet read control 0.
-    std::vector<std::int32_t> first_controls(const Chunks &chunks) const {
+    std::vector<std::int32_t> runs(const Chunks &chunks, std::int32_t components) const {
         const std::int64_t per_tet = entities_of_tet(chunks.degree);
         std::vector<std::int32_t> found(static_cast<std::size_t>(batches() * per_tet * lanes_));
         for (std::size_t part = 0; part < chunks.parts.size(); ++part)
             each(chunks, part, [&](std::int64_t tet, std::int64_t batch, std::int64_t lane) {
                 for (std::int64_t e = 0; e < per_tet; ++e)
                     found[static_cast<std::size_t>((batch * per_tet + e) * lanes_ + lane)] =
-                        chunks.local[static_cast<std::size_t>(tet * per_tet + e)];
+                        components * chunks.local[static_cast<std::size_t>(tet * per_tet + e)];
             });
         return found;
     }

@@ -10,7 +10,8 @@
 //
 // with a_j = C(m,j)^2 / (C(2m,m) C(2m+3,3)) and E_j the elevation from degree j to m. In the basis
 // scaled by multinomials elevation is a sum without factors, so the ladder needs additions and one
-// diagonal scaling a level; all a_j > 0, so nothing cancels and float32 is safe.
+// diagonal scaling a level; all a_j > 0, so nothing cancels and float32 is safe. The denominator is
+// a factor of the material, which leaves the lowest level and the corners of the highest unscaled.
 #pragma once
 
 #include "kernels.hpp"
@@ -22,8 +23,9 @@
 #define BEZSOMA_HIGHEST_DEGREE 10
 #endif
 
-/// Loops over the controls of degrees up to this one are written out for the compiler.
-#define BEZSOMA_UNROLL 2
+/// Loops over the controls of degrees up to this one are written out for the compiler. Without the
+/// 32 registers of AVX-512 degree 4, whose m is 3, would take 13 to 23 % more.
+#define BEZSOMA_UNROLL (BEZSOMA_BYTES < 64 ? 2 : 3)
 #define BEZSOMA_LADDER 4
 
 namespace bezsoma::BEZSOMA_ISA {
@@ -77,16 +79,19 @@ static constexpr double factorial(int n) {
     return f;
 }
 
+/// What the ladder's squares of binomials have to be multiplied by to be the a_j.
+template <int m>
+inline constexpr double ladder_unit = 1.0 / combinations(2 * m, m) / combinations(2 * m + 3, 3);
+
 template <int m> struct LadderScales {
     double top[controls(m)] = {};
     double level[combinations(m + 4, 4)] =
-        {}; // a_j multinomial(j, b)^2, levels 0..m one after another
+        {}; // (C(m,j) multinomial(j, b))^2, levels 0..m one after another
 
     constexpr LadderScales() {
         int next = 0;
         for (int j = 0; j <= m; ++j) {
-            const double a = 1.0 * combinations(m, j) * combinations(m, j) /
-                             combinations(2 * m, m) / combinations(2 * m + 3, 3);
+            const double a = 1.0 * combinations(m, j) * combinations(m, j);
             for (int s3 = 0; s3 <= j; ++s3)
                 for (int s2 = 0; s2 <= s3; ++s2)
                     for (int s1 = 0; s1 <= s2; ++s1) {
@@ -135,8 +140,8 @@ BEZSOMA_INLINE void elevated(Lanes<T, lanes> *y, const Lanes<T, lanes> *lower,
 }
 
 /// The levels below j of the ladder: y of degree j comes in, and goes out as
-/// level_j y + S (ladder of S^T y), where S is the elevation of the scaled basis. Other levels than
-/// those of the mass matrix make other matrices of the same kind.
+/// level_j y + S (ladder of S^T y), where S is the elevation of the scaled basis: from m on it is
+/// the mass matrix over `ladder_unit`. Other levels make other matrices of the same kind.
 template <int m, int j, class T, int lanes, const auto &scales = ladder_scales<m>>
 BEZSOMA_INLINE void ladder(Lanes<T, lanes> *y) {
     constexpr int first = combinations(j + 3, 4);
@@ -158,7 +163,7 @@ BEZSOMA_INLINE void ladder(Lanes<T, lanes> *y) {
                 y[p3] += lower[p];
             });
         }
-    } else {
+    } else if constexpr (scales.level[0] != 1) {
         y[0] *= static_cast<T>(scales.level[0]);
     }
 }
@@ -263,16 +268,15 @@ template <int n, int dim = 0, class F> BEZSOMA_INLINE void each_run_of_tet(F &&f
         each_run_of_tet<n, dim + 1>(f);
 }
 
-/// Where a run of controls begins, with `row` numbers a control: see Batches.
-template <class T>
-BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int32_t control, int row = 3) {
-    T *found = (control < 0 ? foreign_end : own) + std::int64_t{control} * row;
+/// Where a run of controls begins: see Batches.
+template <class T> BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int64_t first) {
+    T *found = (first < 0 ? foreign_end : own) + first;
     asm("" : "+r"(found)); // in one register: as a base and an index there are too few of them
     return found;
 }
 
-/// Vectors that hold own and foreign controls in one area, where no control has a negative number.
-template <class T> BEZSOMA_INLINE Batches<T> in_one_area(const T *u, T *f) {
+/// Vectors that hold own and foreign controls in one row, where no run begins below zero.
+template <class T> BEZSOMA_INLINE Batches<T> in_one_row(const T *u, T *f) {
     Batches<T> places = {};
     places.u = u;
     places.f = f;
@@ -325,14 +329,13 @@ BEZSOMA_INLINE void gather_square(const From &from, int begin, const int *order,
 }
 
 /// Reads the controls of `lanes` tets: u[3 p + k][lane] = component k of the control at position p
-/// of the lane's tet. May read some numbers past a control: pad the vector.
-template <int n, class T, int lanes>
-BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
+/// of the lane's tet. The run of an entity begins at `begin_of(entity * lanes + lane)`. May read
+/// some numbers past a control: pad the vector.
+template <int n, class T, int lanes, class Begin>
+BEZSOMA_INLINE void gather(const Begin &begin_of, Lanes<T, lanes> *u) {
     each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
         const int *order = entity_order<n>.row + row;
-        const auto found = [&](int l) BEZSOMA_INLINED {
-            return place(b.u, b.u_end, first[entity * lanes + l]);
-        };
+        const auto found = [&](int l) BEZSOMA_INLINED { return begin_of(entity * lanes + l); };
         if constexpr (rows <= square<lanes>) { // each place where it is read: registers are few
             gather_square<rows, T, lanes>(found, 0, order, u);
         } else {
@@ -349,6 +352,13 @@ BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes
                 gather_square<left, T, lanes>(from, begin, order + begin, u);
         }
     });
+}
+
+/// The same of the displacements that a chunk has.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes<T, lanes> *u) {
+    const auto begin_of = [&](int run) BEZSOMA_INLINED { return place(b.u, b.u_end, first[run]); };
+    gather<n, T, lanes>(begin_of, u);
 }
 
 /// Adds `rows` numbers of every lane, 1, 2 or 4, at `begin` of its run, lane after lane: tets of a
@@ -393,32 +403,30 @@ BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
     });
 }
 
-/// The same where a control has four numbers in f, so that a whole register moves at once; foreign
-/// controls stand before the own ones, at numbers below zero.
+/// The same in an area, where the runs of a tet are single controls.
 template <int n, class T, int lanes>
-BEZSOMA_INLINE void scatter_padded(T *f, const std::int32_t *first, const Lanes<T, lanes> *forces) {
+BEZSOMA_INLINE void gather_area(const T *area, const std::int32_t *first, Lanes<T, lanes> *u) {
+    gather<n, T, lanes>([&](int run) BEZSOMA_INLINED { return area + first[run]; }, u);
+}
+
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void scatter_area(T *area, const std::int32_t *first, const Lanes<T, lanes> *f) {
     each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
-        T *to[lanes];
-#pragma GCC unroll 16
-        for (int l = 0; l < lanes; ++l)
-            to[l] = f + 4 * std::int64_t{first[entity * lanes + l]};
+        static_assert(rows == 3);
         const int *order = entity_order<n>.row + row;
 #pragma GCC unroll 4
-        for (int c = 0; c < rows / 3; ++c)
-#pragma GCC unroll 4
-            for (int part = 0; part < lanes; part += 4) { // four lanes are loaded, not extracted
-                Lanes<T, 4> block[4] = {};
+        for (int part = 0; part < lanes; part += 4) { // four lanes are loaded, not extracted
+            Lanes<T, 4> block[4] = {};
 #pragma GCC unroll 3
-                for (int k = 0; k < 3; ++k)
-                    block[k] =
-                        load<T, 4>(reinterpret_cast<const T *>(forces + order[3 * c + k]) + part);
-                transpose<T, 4>(block);
+            for (int k = 0; k < 3; ++k)
+                block[k] = load<T, 4>(reinterpret_cast<const T *>(f + order[k]) + part);
+            transpose<T, 4>(block);
 #pragma GCC unroll 4
-                for (int l = 0; l < 4; ++l) {
-                    T *at = to[part + l] + 4 * c;
-                    store<T, 4>(at, load<T, 4>(at) + block[l]);
-                }
+            for (int l = 0; l < 4; ++l) {
+                T *to = area + first[entity * lanes + part + l] + forces_in_row;
+                store<T, 4>(to, load<T, 4>(to) + block[l]);
             }
+        }
     });
 }
 
@@ -456,7 +464,7 @@ template <int n, class T, int lanes> struct Ahead {
     BEZSOMA_INLINE void call(int p) const {
 #pragma GCC unroll 4
         for (int k = 0; k < lines; ++k) {
-            __builtin_prefetch(u + (p * lines + k) * line);
+            __builtin_prefetch(u + (p * lines + k) * line, 0, 2);
             __builtin_prefetch(f + (p * lines + k) * line, 1);
         }
     }
@@ -469,8 +477,8 @@ BEZSOMA_INLINE void stress_moments(const Batch<T, lanes> &tet, const Lanes<T, la
                                    const Ahead<n, T, lanes> &ahead) {
     using R = Lanes<T, lanes>;
     constexpr int m = n - 1;
-    const R lambda = tet.lambda * static_cast<T>(n * n);
-    const R mu = tet.mu * static_cast<T>(n * n);
+    constexpr T scale = static_cast<T>(n * n * ladder_unit<m>);
+    const R lambda = tet.lambda * scale, mu = tet.mu * scale;
     each_control<m>([&](int p, int p1, int p2, int p3) BEZSOMA_INLINED {
         R h[3][3];
         ahead.call(p);
@@ -512,10 +520,20 @@ BEZSOMA_INLINE void forces_of_moments(const Batch<T, lanes> &tet,
             const R x = stress[voigt[k][0]][p] * top;
             const R y = stress[voigt[k][1]][p] * top;
             const R z = stress[voigt[k][2]][p] * top;
-            f[3 * p + k] = f[3 * p + k] + x * g0[0] + y * g0[1] + z * g0[2];
-            f[3 * p1 + k] = f[3 * p1 + k] + x * tet.g[0][0] + y * tet.g[0][1] + z * tet.g[0][2];
-            f[3 * p2 + k] = f[3 * p2 + k] + x * tet.g[1][0] + y * tet.g[1][1] + z * tet.g[1][2];
-            f[3 * p3 + k] = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
+            if constexpr (n <= 2) {
+                f[3 * p + k] = f[3 * p + k] + x * g0[0] + y * g0[1] + z * g0[2];
+                f[3 * p1 + k] = f[3 * p1 + k] + x * tet.g[0][0] + y * tet.g[0][1] + z * tet.g[0][2];
+                f[3 * p2 + k] = f[3 * p2 + k] + x * tet.g[1][0] + y * tet.g[1][1] + z * tet.g[1][2];
+                f[3 * p3 + k] = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
+            } else { // fewer products, but sums that wait for them
+                const R f1 = x * tet.g[0][0] + y * tet.g[0][1] + z * tet.g[0][2];
+                const R f2 = x * tet.g[1][0] + y * tet.g[1][1] + z * tet.g[1][2];
+                const R f3 = x * tet.g[2][0] + y * tet.g[2][1] + z * tet.g[2][2];
+                f[3 * p + k] -= f1 + f2 + f3;
+                f[3 * p1 + k] += f1;
+                f[3 * p2 + k] += f2;
+                f[3 * p3 + k] = f3;
+            }
         }
     });
 }

@@ -32,11 +32,6 @@ std::int64_t first_point(const Chunk &chunk) {
     return 3 * (chunk.control + chunk.foreign_begin + std::ssize(chunk.foreign));
 }
 
-/// Two numbers anywhere in memory, in one register.
-template <class T> struct Two {
-    typedef T type __attribute__((vector_size(2 * sizeof(T)), aligned(sizeof(T)), may_alias));
-};
-
 } // namespace
 
 std::int64_t controls_of_chunk(const ElasticTets &tets) {
@@ -110,7 +105,7 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
                 const std::int32_t local = chunks_.local[size(tet * per_tet + e)];
                 const bool own = local < chunk.owned;
                 first_[size((batch * per_tet + e) * lanes_ + lane)] =
-                    own ? local : local - chunk.owned - foreign;
+                    kernel_.row * (own ? local : local - chunk.owned - foreign);
                 if (own)
                     met = std::max(met, local + controls_inside(tets.degree, static_cast<int>(e)));
             }
@@ -185,7 +180,8 @@ template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
             .u_end = nullptr,
             .f = nullptr,
             .f_end = nullptr,
-            .into = nullptr};
+            .into = nullptr,
+            .area = nullptr};
 }
 
 namespace {
@@ -196,12 +192,6 @@ template <class T> T *copied(const T *x, std::int64_t from, T *y, std::int64_t t
     if (from == to) {
         for (std::int64_t i = 0; i < n * to; ++i)
             y[i] = x[i];
-    } else if (from == 4 && to == 3) { // forces of one side, which is most of what is copied
-        for (std::int64_t i = 0; i < n; ++i) {
-            using Pair = typename Two<T>::type;
-            *reinterpret_cast<Pair *>(y + 3 * i) = *reinterpret_cast<const Pair *>(x + 4 * i);
-            y[3 * i + 2] = x[4 * i + 2];
-        }
     } else {
         for (std::int64_t i = 0; i < n; ++i) {
             for (std::int64_t k = 0; k < both; ++k)
@@ -211,6 +201,18 @@ template <class T> T *copied(const T *x, std::int64_t from, T *y, std::int64_t t
         }
     }
     return y + n * to;
+}
+
+/// The forces of n controls of an area, one after another.
+template <class T> void forces_of_area(const T *area, std::int64_t n, T *f) {
+    for (std::int64_t i = 0; i < n; ++i)
+        for (std::int64_t k = 0; k < 3; ++k)
+            f[3 * i + k] = area[row_of_area * i + forces_in_row + k];
+}
+
+template <class T> void make_least(std::vector<T> &v, std::size_t n) {
+    if (v.size() < n)
+        v.resize(n);
 }
 
 } // namespace
@@ -237,45 +239,72 @@ template <class T> bool ElasticOperator<T>::in_place(const Chunk &chunk, int sid
 template <class T>
 void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
                                          bool alone, std::vector<T> &scratch) {
+    if (sides == 1 && works_in_area())
+        return forces_in_area(c, u, f, f_foreign, alone, scratch);
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t own = chunk.owned, foreign = std::ssize(chunk.foreign), wide = width(sides);
-    const std::int64_t row = 3 * std::int64_t{sides}, row_u = 3 * wide;
-    const std::int64_t row_f = sides == 1 ? kernel_.row : row_u;
-    const bool u_in_place = in_place(chunk, sides), f_in_place = u_in_place && row_f == row;
-    const std::size_t length = size(row_u * chunks_.largest) + padding;
-    if (const auto least = length + size(row_f * chunks_.largest) + 2 * cache_line / sizeof(T);
-        scratch.size() < least)
-        scratch.resize(least);
+    const std::int64_t row = 3 * std::int64_t{sides}, padded = 3 * wide;
+    const bool direct = in_place(chunk, sides);
+    const std::size_t length = size(padded * chunks_.largest) + padding;
+    make_least(scratch, 2 * length + 2 * cache_line / sizeof(T));
     Batches<T> b = batches(c);
-    b.into = f + row * chunk.control;
     T *next = on_line(scratch.data()), *const area = on_line(next + length);
     b.u = u + row * chunk.control;
-    if (!u_in_place) {
+    if (!direct) {
         next = copied(b.u, sides, next, wide, 3 * own);
-        b.u = next - row_u * own;
+        b.u = next - padded * own;
     }
     b.u_end = foreign_of(chunk, u, sides, next);
-    T *const foreign_forces = f_in_place ? f_foreign : area;
-    b.f_end = foreign_forces + row_f * foreign;
-    b.f = f_in_place ? b.into : b.f_end;
-    std::fill_n(foreign_forces, row_f * foreign, T{});
+    T *const foreign_forces = direct ? f_foreign : area;
+    b.into = f + row * chunk.control;
+    b.f_end = foreign_forces + padded * foreign;
+    b.f = direct ? b.into : b.f_end;
+    std::fill_n(foreign_forces, padded * foreign, T{});
     if (sides == 1)
         kernel_.apply(b);
     else
         kernel_.apply_many(b, static_cast<int>(wide));
-    const T *found = foreign_forces;
-    std::int64_t row_found = row_f;
-    if (!f_in_place) {
-        const std::int64_t parts = sides == 1 ? 1 : 3; // of a row: padding ends each
-        copied(b.f, row_f / parts, b.into, row / parts, parts * own);
-        if (!alone || wide != sides) {
-            copied(found, row_f / parts, f_foreign, row / parts, parts * foreign);
-            found = f_foreign;
-            row_found = row;
-        }
+    if (!direct) {
+        copied(foreign_forces, wide, f_foreign, sides, 3 * foreign);
+        copied(b.f, wide, b.into, sides, 3 * own);
     }
     if (alone)
-        add_rows(chunk.foreign, found, row_found, f, row);
+        add_rows(chunk.foreign, f_foreign, row, f, row);
+}
+
+/// The batches of a chunk with an area, into which its foreign controls have come.
+template <class T>
+Batches<T> ElasticOperator<T>::with_area(std::size_t c, const T *u, std::vector<T> &scratch) const {
+    const Chunk &chunk = chunks_.parts[c];
+    make_least(scratch, size(row_of_area * chunks_.largest) + cache_line / sizeof(T));
+    Batches<T> b = batches(c);
+    b.u = u + 3 * std::int64_t{chunk.control};
+    b.area = on_line(scratch.data());
+    for (const std::int32_t control : chunk.foreign) {
+        for (std::int64_t k = 0; k < 3; ++k) {
+            b.area[k] = u[3 * std::int64_t{control} + k];
+            b.area[forces_in_row + k] = T{};
+        }
+        b.area += row_of_area;
+    }
+    return b;
+}
+
+/// The same of one side by a kernel that works in an area.
+template <class T>
+void ElasticOperator<T>::forces_in_area(std::size_t c, const T *u, T *f, T *f_foreign, bool alone,
+                                        std::vector<T> &scratch) {
+    const Chunk &chunk = chunks_.parts[c];
+    const std::int64_t foreign = std::ssize(chunk.foreign);
+    Batches<T> b = with_area(c, u, scratch);
+    const T *const found = b.area - row_of_area * foreign;
+    b.into = f + 3 * std::int64_t{chunk.control};
+    kernel_.apply(b);
+    forces_of_area(b.area, chunk.owned, b.into);
+    if (alone)
+        add_rows(chunk.foreign, found + forces_in_row, row_of_area, f, 3);
+    else
+        forces_of_area(found, foreign, f_foreign);
 }
 
 template <class T> double ElasticOperator<T>::work(const T *u) {
@@ -283,9 +312,11 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
     team_.run(sums.size(), [&](std::size_t c, std::size_t thread) {
         const Chunk &chunk = chunks_.parts[c];
         auto &scratch = scratch_[thread];
-        if (const auto least = size(3 * std::int64_t{chunks_.largest}) + padding;
-            scratch.size() < least)
-            scratch.resize(least);
+        if (works_in_area()) {
+            sums[c] = kernel_.work(with_area(c, u, scratch));
+            return;
+        }
+        make_least(scratch, size(3 * std::int64_t{chunks_.largest}) + padding);
         Batches<T> b = batches(c);
         b.u = scratch.data();
         b.u_end = foreign_of(chunk, u, 1,

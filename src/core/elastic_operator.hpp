@@ -68,6 +68,10 @@ private:
     Batches<T> batches(std::size_t chunk) const;
     T *foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const;
     bool in_place(const Chunk &chunk, int sides) const;
+    bool works_in_area() const { return kernel_.row == row_of_area; }
+    Batches<T> with_area(std::size_t chunk, const T *u, std::vector<T> &scratch) const;
+    void forces_in_area(std::size_t chunk, const T *u, T *f, T *f_foreign, bool alone,
+                        std::vector<T> &scratch);
     void forces_of_chunk(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides, bool alone,
                          std::vector<T> &scratch);
 

@@ -11,16 +11,24 @@ namespace bezsoma {
 /// share controls, and of sums onto one control each waits for the one before.
 constexpr std::int64_t apart = 4;
 
+/// Numbers of a control in an area: three of displacement and three of force, each with a spare
+/// one.
+constexpr std::int64_t row_of_area = 8, forces_in_row = 4;
+
 /// Tets of one chunk in batches of one per lane, and the vectors they work on.
 ///
-/// first (batches, entities, lanes): the control at which each entity's run begins, among the own
-/// ones of the chunk, or below zero, counted from the end of its foreign ones; geometry (batches,
-/// 9, lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes); lame (regions, 2): lambda, mu.
-/// u (own controls, 3), f (own controls, Kernel::row), u_end, f_end the ends of the same of foreign
-/// controls. Past both parts of u 16 numbers may be read but are not used. Own forces are cleared
-/// when a stretch first meets them, met (batches,) being one past the own controls met so far;
-/// foreign ones are added to. `into` is where own forces go in the end, f itself or what they are
-/// copied to: Kernel::apply calls for it ahead.
+/// first (batches, entities, lanes): where each entity's run begins, Kernel::row times its first
+/// control, among the own ones of the chunk, or below zero, counted from the end of its foreign
+/// ones; geometry (batches, 9, lanes): sqrt(V) grad L_i, i = 1..3; region (batches, lanes); lame
+/// (regions, 2): lambda, mu.
+/// u, f (own controls, 3), u_end, f_end the ends of the same of foreign controls. Past both parts
+/// of u 16 numbers may be read but are not used. Own forces are cleared when a stretch first meets
+/// them, met (batches,) being one past the own controls met so far; foreign ones are added to.
+/// `into` is where own forces go in the end, f itself or what they are copied to: Kernel::apply
+/// calls for it ahead.
+///
+/// area (own controls, row_of_area), foreign ones before: what kernels with such rows have in place
+/// of u_end, f and f_end. Own controls come into it from u when a stretch first meets them.
 template <class T> struct Batches {
     std::int64_t count;
     const std::int32_t *first;
@@ -31,6 +39,7 @@ template <class T> struct Batches {
     const T *u, *u_end;
     T *f, *f_end;
     T *into;
+    T *area;
 };
 
 /// A vertex, edge, face or interior with the run of controls inside it.
@@ -67,8 +76,9 @@ struct BlockKernel {
 /// What is done on batches. apply_many takes several right-hand sides beside each other, u and f
 /// (controls, 3, sides): lanes are sides there, and batches are read tet by tet.
 ///
-/// row: the numbers that `apply` takes a control to have in f. 3; or 4, so that a whole register
-/// moves at once: then foreign controls end where own ones begin, at f.
+/// row: the numbers that `apply` and `work` take a control to have. 3; or row_of_area:
+/// displacements and forces of a control beside each other, each with a spare number, so that whole
+/// registers move and forces go to a line of the cache that displacements have brought.
 template <class T> struct Kernel {
     int row;
     void (*apply)(const Batches<T> &);

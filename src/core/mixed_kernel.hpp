@@ -143,8 +143,8 @@ BEZSOMA_INLINE void mixed_moments(const Batch<double, lanes> &tet, Lanes<double,
                                   Lanes<double, lanes> (&trace)[controls(n - 1)]) {
     using R = Lanes<double, lanes>;
     constexpr int m = n - 1;
-    const R mu = tet.mu * (1.0 * n * n), per_n = root * (1.0 * n);
-    const R compressibility = tet.lambda * root * root;
+    const R mu = tet.mu * (n * n * ladder_unit<m>), per_n = root * (n * ladder_unit<m>);
+    const R compressibility = tet.lambda * root * root * ladder_unit<m>;
     each_control<m>([&](int b, int p1, int p2, int p3) {
         R h[3][3];
         gradient<double, lanes>(tet, u, b, p1, p2, p3, h);
@@ -171,7 +171,7 @@ template <int n, int lanes> void mixed_apply(const MixedBatches &b) {
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R u[3 * controls(n)], f[3 * controls(n)], p[controls(m)];
     R stress[6][controls(m)], trace[controls(m)];
-    const Batches<double> places = in_one_area<double>(b.u, b.f);
+    const Batches<double> places = in_one_row<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
         const std::int32_t *first_pressure = b.first_pressure + i * entities_of_pressure * lanes;
@@ -196,10 +196,11 @@ template <int n, int lanes> double mixed_work(const MixedBatches &b) {
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R u[3 * controls(n)], p[controls(m)], zero[controls(m)] = {};
     R stress[6][controls(m)], trace[controls(m)], sum = {};
-    const Batches<double> places = in_one_area<double>(b.u, b.f);
+    const Batches<double> places = in_one_row<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
-        const R root = root_volume<lanes>(tet), compressibility = tet.lambda * root * root;
+        const R root = root_volume<lanes>(tet);
+        const R compressibility = tet.lambda * root * root * ladder_unit<m>;
         gather<n, double, lanes>(places, b.first + i * entities(n) * lanes, u);
         gather_pressure<lanes>(low, b.p, b.first_pressure + i * entities_of_pressure * lanes, p);
         raise(low, m, p);
@@ -230,12 +231,12 @@ template <int n, int lanes> void mixed_couple(const MixedBatches &b) {
     constexpr int m = n - 1;
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R f[3 * controls(n)], p[controls(m)];
-    const Batches<double> places = in_one_area<double>(b.u, b.f);
+    const Batches<double> places = in_one_row<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
         gather_pressure<lanes>(low, b.p, b.first_pressure + i * entities_of_pressure * lanes, p);
         raise(low, m, p);
-        const R scale = root_volume<lanes>(tet) * (-1.0 * n);
+        const R scale = root_volume<lanes>(tet) * (-n * ladder_unit<m>);
         for (int at = 0; at < controls(m); ++at)
             p[at] *= scale * (ladder_scales<m>.top[at] * ladder_scales<m>.top[at]);
         ladder<m, m, double, lanes>(p);
@@ -324,7 +325,7 @@ template <int m, int lanes, OnPressure what> void on_pressure(const MixedBatches
             else
                 ladder<m, m, double, lanes>(p);
             for (int at = 0; at < controls(m); ++at)
-                p[at] *= weight * (top[at] * top[at] * (inverse ? diagonal[at] : 1.0));
+                p[at] *= weight * (top[at] * top[at] * (inverse ? diagonal[at] : ladder_unit<m>));
         }
         scatter_pressure<lanes>(m, b.g, first, p);
     }

@@ -25,8 +25,8 @@ MixedOperator::MixedOperator(const MixedTets &tets, const Kernels &kernels, Team
       pressure_degree_(tets.pressure_degree),
       u_(chunks_of_displacement(tets.displacement, team), 3),
       p_(bezsoma::chunks(tets.pressure_degree, tets.first_pressure, cuts(u_.chunks()), team), 1),
-      lanes_(u_.chunks(), kernels.lanes64), first_(lanes_.first_controls(u_.chunks())),
-      first_pressure_(lanes_.first_controls(p_.chunks())),
+      lanes_(u_.chunks(), kernels.lanes64), first_(lanes_.runs(u_.chunks(), 3)),
+      first_pressure_(lanes_.runs(p_.chunks(), 1)),
       moduli_(tets.displacement.lame, tets.displacement.lame + 2 * tets.displacement.regions),
       scratch_(team.size()) {
     u_.forget_local();

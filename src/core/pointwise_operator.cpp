@@ -92,15 +92,16 @@ template <class T> void PointwiseOperator<T>::pack(const ElasticTets &tets) {
         for (std::int64_t i = chunk.tet; i < chunk.tet + chunk.tets; ++i) {
             const std::int64_t place = next[size(tets.region(i))]++;
             const std::int64_t batch = place / lanes_, lane = place % lanes_;
-            const auto found_by = [&](const Chunks &chunks, std::vector<std::int32_t> &first) {
+            const auto found_by = [&](const Chunks &chunks, std::int32_t components,
+                                      std::vector<std::int32_t> &first) {
                 const std::int64_t per_tet = entities_of_tet(chunks.degree);
                 for (std::int64_t e = 0; e < per_tet; ++e)
                     first[size((batch * per_tet + e) * lanes_ + lane)] =
-                        chunks.local[size(i * per_tet + e)];
+                        components * chunks.local[size(i * per_tet + e)];
             };
-            found_by(u_.chunks(), first_);
+            found_by(u_.chunks(), 3, first_);
             if (p_)
-                found_by(p_->chunks(), first_pressure_);
+                found_by(p_->chunks(), 1, first_pressure_);
             const TetShape shape = tets.shape(i);
             T *geometry = geometry_.data() + batch * 10 * lanes_ + lane;
             for (std::int64_t k = 0; k < 9; ++k)

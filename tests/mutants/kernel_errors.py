@@ -57,13 +57,13 @@ OPERATOR = (
         ),
         (
             "forces in rows of four that replace those of the tets before",
-            "store<T, 4>(at, load<T, 4>(at) + block[l]);",
-            "store<T, 4>(at, block[l]);",
+            "store<T, 4>(to, load<T, 4>(to) + block[l]);",
+            "store<T, 4>(to, block[l]);",
         ),
         (
             "the later four lanes added to the places of the first",
-            "to[part + l] + 4 * c;",
-            "to[l] + 4 * c;",
+            "first[entity * lanes + part + l] + forces_in_row;",
+            "first[entity * lanes + l] + forces_in_row;",
         ),
         (
             "work with one shear's sign turned",
@@ -76,14 +76,9 @@ OPERATOR = (
             "sum += lower[below[0]];",
         ),
         (
-            "the lowest rung of the ladder counted twice",
-            "y[0] *= static_cast<T>(scales.level[0]);",
-            "y[0] *= static_cast<T>(2 * scales.level[0]);",
-        ),
-        (
             "shear with the factor n in place of n^2",
-            "const R mu = tet.mu * static_cast<T>(n * n);",
-            "const R mu = tet.mu * static_cast<T>(n);",
+            "mu = tet.mu * scale;",
+            "mu = tet.mu * (scale / n);",
         ),
     ),
     *errors_in(
@@ -101,13 +96,18 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "forces on shared controls kept from the call before",
-            "std::fill_n(foreign_forces, row_f * foreign, T{});",
+            "std::fill_n(foreign_forces, padded * foreign, T{});",
             ";",
         ),
         (
-            "a last own control whose forces stay in rows of four",
-            "copied(b.f, row_f / parts, b.into, row / parts, parts * own);",
-            "copied(b.f, row_f / parts, b.into, row / parts, parts * own - 1);",
+            "a last own control whose forces stay in the area",
+            "forces_of_area(b.area, chunk.owned, b.into);",
+            "forces_of_area(b.area, chunk.owned - 1, b.into);",
+        ),
+        (
+            "foreign controls whose forces an area keeps from the chunk before",
+            "b.area[forces_in_row + k] = T{};",
+            ";",
         ),
         ("tets of twice their volume", "std::abs(det) / 6", "std::abs(det) / 3"),
         (
@@ -152,6 +152,15 @@ OPERATOR = (
 )
 
 MIXED = (
+    *errors_in(
+        f"{CORE}/elastic_kernel.hpp",
+        MIXED_FREE,
+        (
+            "the lowest rung of the inverse ladder counted twice",
+            "y[0] *= static_cast<T>(scales.level[0]);",
+            "y[0] *= static_cast<T>(2 * scales.level[0]);",
+        ),
+    ),
     *errors_in(
         f"{CORE}/mixed_kernel.hpp",
         MIXED_FREE,
