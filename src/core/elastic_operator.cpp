@@ -15,7 +15,7 @@ namespace {
 
 // u and f of a chunk fit the second-level cache or nearly, and small meshes still give every thread
 // its share. Smaller chunks touch more controls of others, which are copied one by one.
-constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 64;
+constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 32;
 
 std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
