@@ -361,49 +361,70 @@ BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes
     gather<n, T, lanes>(begin_of, u);
 }
 
-/// Adds `rows` numbers of every lane, 1, 2 or 4, at `begin` of its run, lane after lane: tets of a
-/// batch share controls. Lanes are parted by way of memory; a compiler may extract them instead.
-template <int rows, class T, int lanes>
-BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
-                                   const Lanes<T, lanes> *f) {
-    Lanes<T, lanes> block[rows];
-#pragma GCC unroll 4
-    for (int r = 0; r < rows; ++r)
-        block[r] = f[order[r]];
-    transpose<T, lanes, rows>(block);
-    alignas(64) T parted[rows * lanes];
-#pragma GCC unroll 4
-    for (int r = 0; r < rows; ++r)
-        store<T, lanes>(parted + r * lanes, block[r]);
-#pragma GCC unroll 16
-    for (int l = 0; l < lanes; ++l) {
-        const T *part = parted + l % rows * lanes + l / rows * rows;
-        store<T, rows>(to[l] + begin, load<T, rows>(to[l] + begin) + load<T, rows>(part));
+/// Adds the first `rows` numbers of a register to memory.
+template <int rows, class T, int lanes> BEZSOMA_INLINE void add_row(T *to, Lanes<T, lanes> v) {
+    if constexpr (rows == lanes) {
+        store<T, lanes>(to, load<T, lanes>(to) + v);
+    } else {
+        if constexpr (rows > 1)
+            store<T, 2>(to, load<T, 2>(to) + __builtin_shufflevector(v, v, 0, 1));
+        if constexpr (rows % 2 == 1)
+            to[rows - 1] += v[rows - 1];
     }
 }
 
-/// Adds the forces of `lanes` tets to memory.
-template <int n, class T, int lanes>
-BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
-                            const Lanes<T, lanes> *f) {
+/// Adds `rows` numbers of every lane, at most a square's, and zeros to `spare` numbers after them,
+/// at `begin` of its run, lane after lane: tets of a batch share controls. Forces lie in memory,
+/// and a square's lanes are loaded from there: to part registers would take stores, which it waits
+/// for.
+template <int rows, int spare, class T, int lanes>
+BEZSOMA_INLINE void scatter_square(T *const *to, int begin, const int *order,
+                                   const Lanes<T, lanes> *f) {
+    constexpr int side = square<lanes>;
+    const auto part_of = [&](int row, int lane) BEZSOMA_INLINED {
+        return reinterpret_cast<const T *>(f + order[row]) + lane;
+    };
+#pragma GCC unroll 16
+    for (int lane = 0; lane < lanes; lane += side) {
+        Lanes<T, side> block[side] = {};
+#pragma GCC unroll 4
+        for (int r = 0; r < rows; ++r)
+            block[r] = load<T, side>(part_of(r, lane));
+        transpose<T, side>(block);
+#pragma GCC unroll 4
+        for (int l = 0; l < side; ++l)
+            add_row<rows + spare, T, side>(to[lane + l] + begin, block[l]);
+    }
+}
+
+/// Adds the forces of `lanes` tets to memory, where runs begin as in `gather`, with so many spare
+/// numbers after a control that is alone in its run.
+template <int n, class T, int lanes, int spare = 0, class Begin>
+BEZSOMA_INLINE void scatter(const Begin &begin_of, const Lanes<T, lanes> *f) {
     each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
         T *to[lanes];
 #pragma GCC unroll 16
         for (int l = 0; l < lanes; ++l)
-            to[l] = place(b.f, b.f_end, first[entity * lanes + l]);
+            to[l] = begin_of(entity * lanes + l);
         const int *order = entity_order<n>.row + row;
-        constexpr int left = rows % square<lanes>, pairs = lanes >= 2 ? left / 2 * 2 : 0;
+        constexpr int side = square<lanes>, left = rows % side;
         int begin = 0;
-        for (; begin < rows - left; begin += square<lanes>)
-            scatter_square<square<lanes>, T, lanes>(to, begin, order + begin, f);
-        if constexpr (pairs > 0)
-            scatter_square<pairs, T, lanes>(to, begin, order + begin, f);
-        if constexpr (left > pairs)
-            scatter_square<1, T, lanes>(to, begin + pairs, order + begin + pairs, f);
+        for (; begin < rows - left; begin += side)
+            scatter_square<side, 0, T, lanes>(to, begin, order + begin, f);
+        if constexpr (left > 0)
+            scatter_square<left, spare, T, lanes>(to, begin, order + begin, f);
     });
 }
 
-/// The same in an area, where the runs of a tet are single controls.
+/// The same to the forces that a chunk has.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
+                            const Lanes<T, lanes> *f) {
+    const auto begin_of = [&](int run) BEZSOMA_INLINED { return place(b.f, b.f_end, first[run]); };
+    scatter<n, T, lanes>(begin_of, f);
+}
+
+/// Both in an area, where the runs of a tet are single controls.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void gather_area(const T *area, const std::int32_t *first, Lanes<T, lanes> *u) {
     gather<n, T, lanes>([&](int run) BEZSOMA_INLINED { return area + first[run]; }, u);
@@ -411,23 +432,9 @@ BEZSOMA_INLINE void gather_area(const T *area, const std::int32_t *first, Lanes<
 
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void scatter_area(T *area, const std::int32_t *first, const Lanes<T, lanes> *f) {
-    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
-        static_assert(rows == 3);
-        const int *order = entity_order<n>.row + row;
-#pragma GCC unroll 4
-        for (int part = 0; part < lanes; part += 4) { // four lanes are loaded, not extracted
-            Lanes<T, 4> block[4] = {};
-#pragma GCC unroll 3
-            for (int k = 0; k < 3; ++k)
-                block[k] = load<T, 4>(reinterpret_cast<const T *>(f + order[k]) + part);
-            transpose<T, 4>(block);
-#pragma GCC unroll 4
-            for (int l = 0; l < 4; ++l) {
-                T *to = area + first[entity * lanes + part + l] + forces_in_row;
-                store<T, 4>(to, load<T, 4>(to) + block[l]);
-            }
-        }
-    });
+    const auto begin_of = [&](int run)
+                              BEZSOMA_INLINED { return area + first[run] + forces_in_row; };
+    scatter<n, T, lanes, 1>(begin_of, f);
 }
 
 // ---------------------------------------------------------------- the operator

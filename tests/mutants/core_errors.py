@@ -198,8 +198,8 @@ CORE_ERRORS = (
     Mutant(
         "forces parted to the wrong lane",
         f"{CORE}/elastic_kernel.hpp",
-        "parted + l % rows * lanes + l / rows * rows;",
-        "parted + l % rows * lanes;",
+        "reinterpret_cast<const T *>(f + order[row]) + lane;",
+        "reinterpret_cast<const T *>(f + order[row]);",
         MATRIX_FREE,
     ),
     Mutant(

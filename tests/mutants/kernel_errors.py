@@ -52,18 +52,18 @@ OPERATOR = (
         ),
         (
             "a row left over that is scattered as the first of its run",
-            "scatter_square<1, T, lanes>(to, begin + pairs, order + begin + pairs, f);",
-            "scatter_square<1, T, lanes>(to, begin + pairs, order + begin, f);",
+            "scatter_square<left, spare, T, lanes>(to, begin, order + begin, f);",
+            "scatter_square<left, spare, T, lanes>(to, begin, order, f);",
         ),
         (
-            "forces in rows of four that replace those of the tets before",
-            "store<T, 4>(to, load<T, 4>(to) + block[l]);",
-            "store<T, 4>(to, block[l]);",
+            "forces in whole registers that replace those of the tets before",
+            "store<T, lanes>(to, load<T, lanes>(to) + v);",
+            "store<T, lanes>(to, v);",
         ),
         (
-            "the later four lanes added to the places of the first",
-            "first[entity * lanes + part + l] + forces_in_row;",
-            "first[entity * lanes + l] + forces_in_row;",
+            "later squares of lanes added to the places of the first",
+            "(to[lane + l] + begin, block[l]);",
+            "(to[l] + begin, block[l]);",
         ),
         (
             "work with one shear's sign turned",
