@@ -462,7 +462,8 @@ BEZSOMA_INLINE void gradient(const Batch<T, lanes> &tet, const Lanes<T, lanes> *
 }
 
 /// What the batches to come will need first, called for line by line between sums: memory is slow,
-/// and a burst of calls would block the processor.
+/// and a burst of calls would block the processor. It is for the second cache (the twos): in the
+/// first, what is called would take the place of what the batch works on.
 template <int n, class T, int lanes> struct Ahead {
     const T *u, *f;
     static constexpr int line = 64 / sizeof(T);
@@ -472,7 +473,7 @@ template <int n, class T, int lanes> struct Ahead {
 #pragma GCC unroll 4
         for (int k = 0; k < lines; ++k) {
             __builtin_prefetch(u + (p * lines + k) * line, 0, 2);
-            __builtin_prefetch(f + (p * lines + k) * line, 1);
+            __builtin_prefetch(f + (p * lines + k) * line, 0, 2);
         }
     }
 };
