@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from math import comb
 
 WRITTEN_OUT = 6
-"""The highest degree whose ladder is (BEZSOMA_LADDER)."""
+"""The highest degree whose whole ladder is: its highest level is 5, and BEZSOMA_LADDER says 4 of the
+level below."""
 
 
 @dataclass(frozen=True)
@@ -65,16 +66,23 @@ def of_tet(degree: int) -> Counts:
     return Counts(flops, instructions)
 
 
+def forms_shapes(degree: int, width: int) -> bool:
+    """Whether shapes are formed from points in place of being kept (src/core/formed_shapes.hpp)."""
+    return degree == 1 and width == 8
+
+
 def bytes_of_tet(degree: int, width: int) -> int:
     """Geometry, first controls and region of one tet, for numbers of `width` bytes."""
     entities = (4, 10, 14, 15)[min(degree, 4) - 1]
-    return 9 * width + 4 * entities + 4
+    geometry = 0 if forms_shapes(degree, width) else 9 * width
+    return geometry + 4 * entities + 4
 
 
 def least_bytes(degree: int, tets: int, unknowns: int, width: int, sides: int) -> int:
     """What has to move between memory and processor.
 
     u is read; f is written, and read before that, as a cache does where a store misses; each tet's
-    own numbers are read once for all sides.
+    own numbers, and points where shapes are formed from them, are read once for all sides.
     """
-    return 3 * width * unknowns * sides + tets * bytes_of_tet(degree, width)
+    points = width * unknowns if forms_shapes(degree, width) else 0
+    return 3 * width * unknowns * sides + tets * bytes_of_tet(degree, width) + points

@@ -87,9 +87,9 @@ void hand_to_owners(Chunks &all, Team &team) {
 Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target,
               Team &team) {
     // A tet adds n^3 / 6 controls on the average in a large mesh.
-    const std::int64_t per_tet = std::max(1, degree * degree * degree / 6);
-    const std::int64_t most = std::max<std::int64_t>(64, target / per_tet);
-    const std::int64_t number = (tets + most - 1) / most;
+    const std::int64_t cube = std::int64_t{degree} * degree * degree;
+    const std::int64_t most = std::max<std::int64_t>(64, 6 * target / cube);
+    const std::int64_t number = std::max<std::int64_t>(1, (tets + most / 2) / most);
     std::vector<std::int64_t> at;
     for (std::int64_t i = 0; i <= number; ++i)
         at.push_back(tets * i / number);

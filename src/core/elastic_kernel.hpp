@@ -462,8 +462,8 @@ BEZSOMA_INLINE void gradient(const Batch<T, lanes> &tet, const Lanes<T, lanes> *
 }
 
 /// What the batches to come will need first, called for line by line between sums: memory is slow,
-/// and a burst of calls would block the processor. It is for the second cache (the twos): in the
-/// first, what is called would take the place of what the batch works on.
+/// and a burst of calls would block the processor. They bring it to the second cache (that is what
+/// 2 says): in the first it would take the place of what the batch works on.
 template <int n, class T, int lanes> struct Ahead {
     const T *u, *f;
     static constexpr int line = 64 / sizeof(T);

@@ -75,7 +75,7 @@ template <class T> BEZSOMA_INLINE std::int64_t next_stretch(const Batches<T> &b,
 }
 
 /// Calls for the shapes and the places of a batch to come, or for what lies past the last. They are
-/// read once (the zeros): the second-level cache is for what the chunk works on.
+/// read once (which the last 0 says): the second cache is for what the chunk works on.
 template <int n, class T, int lanes>
 BEZSOMA_INLINE void call_batch(const Batches<T> &b, std::int64_t i) {
     constexpr std::int64_t line = 64, of_shapes = 9 * lanes * sizeof(T),

@@ -139,8 +139,8 @@ def test_chunks_add_what_they_share(degree: int) -> None:
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 5])
-def test_the_largest_chunks_too(degree: int) -> None:
-    """Larger chunks, too large for a matrix: an affine field knows its forces by itself.
+def test_many_chunks_too(degree: int) -> None:
+    """Larger chunks and more, too large for a matrix: an affine field knows its forces by itself.
 
     Stress is constant, so forces vanish inside, and sum_a f_a x_a^T = V T exactly.
     """
