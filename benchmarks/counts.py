@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from math import comb
 
 WRITTEN_OUT = 6
-"""The highest degree whose whole ladder is: its highest level is 5, and BEZSOMA_LADDER says 4 of the
-level below."""
+"""The highest degree whose whole ladder is.
+
+Its highest level is 5, and BEZSOMA_LADDER says 4 of the level below.
+"""
 
 
 @dataclass(frozen=True)
