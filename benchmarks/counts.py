@@ -44,12 +44,11 @@ def of_tet(degree: int) -> Counts:
         from degree 3 on 6 scales, 3 x 3 sums of three products, their sums, and 3 x 3 sums
         onto others:                                       33 mul 33 add, 48 with pairs
 
-    Factors of one and sums onto zero, which are about as many, are not told apart.
-
     and the ladder from level m = n - 1 down, for each of six components: 3 + 4 additions for each
     control of the level below and one product for each of this level, which an addition pairs with.
     The lowest level's factor is one, and is left out, as are those of the corners of the highest
     where its controls are written out for the compiler. Last 3 sums for each control.
+    Factors of one elsewhere and sums onto zero, about as many, are not told apart.
 
     >>> of_tet(1).flops == 9 + 45 + 20 + 75 + 12
     True

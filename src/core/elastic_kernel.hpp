@@ -275,14 +275,6 @@ template <class T> BEZSOMA_INLINE T *place(T *own, T *foreign_end, std::int64_t 
     return found;
 }
 
-/// Vectors that hold own and foreign controls in one row, where no run begins below zero.
-template <class T> BEZSOMA_INLINE Batches<T> in_one_row(const T *u, T *f) {
-    Batches<T> places = {};
-    places.u = u;
-    places.f = f;
-    return places;
-}
-
 /// Reads `rows` numbers at `begin` of eight lanes' runs, from(l), in float64, into the rows that
 /// `order` names. Lanes 0 and 2 share a register, 1 and 3, 4 and 6, 5 and 7, so that every step
 /// only moves pairs of numbers or single ones in between, which is an instruction without a table:
@@ -361,6 +353,12 @@ BEZSOMA_INLINE void gather(const Batches<T> &b, const std::int32_t *first, Lanes
     gather<n, T, lanes>(begin_of, u);
 }
 
+/// The same where own and foreign controls stand in one vector.
+template <int n, class T, int lanes>
+BEZSOMA_INLINE void gather(const T *from, const std::int32_t *first, Lanes<T, lanes> *u) {
+    gather<n, T, lanes>([&](int run) BEZSOMA_INLINED { return from + first[run]; }, u);
+}
+
 /// Adds the first `rows` numbers of a register to memory.
 template <int rows, class T, int lanes> BEZSOMA_INLINE void add_row(T *to, Lanes<T, lanes> v) {
     if constexpr (rows == lanes) {
@@ -424,17 +422,10 @@ BEZSOMA_INLINE void scatter(const Batches<T> &b, const std::int32_t *first,
     scatter<n, T, lanes>(begin_of, f);
 }
 
-/// Both in an area, where the runs of a tet are single controls.
-template <int n, class T, int lanes>
-BEZSOMA_INLINE void gather_area(const T *area, const std::int32_t *first, Lanes<T, lanes> *u) {
-    gather<n, T, lanes>([&](int run) BEZSOMA_INLINED { return area + first[run]; }, u);
-}
-
-template <int n, class T, int lanes>
-BEZSOMA_INLINE void scatter_area(T *area, const std::int32_t *first, const Lanes<T, lanes> *f) {
-    const auto begin_of = [&](int run)
-                              BEZSOMA_INLINED { return area + first[run] + forces_in_row; };
-    scatter<n, T, lanes, 1>(begin_of, f);
+/// The same where own and foreign controls stand in one vector.
+template <int n, class T, int lanes, int spare = 0>
+BEZSOMA_INLINE void scatter(T *to, const std::int32_t *first, const Lanes<T, lanes> *f) {
+    scatter<n, T, lanes, spare>([&](int run) BEZSOMA_INLINED { return to + first[run]; }, f);
 }
 
 // ---------------------------------------------------------------- the operator

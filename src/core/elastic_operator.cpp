@@ -249,14 +249,14 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
     const std::size_t length = size(padded * chunks_.largest) + padding;
     make_least(scratch, 2 * length + 2 * cache_line / sizeof(T));
     Batches<T> b = batches(c);
-    T *next = on_line(scratch.data()), *const area = on_line(next + length);
+    T *next = on_line(scratch.data()), *const forces = on_line(next + length);
     b.u = u + row * chunk.control;
     if (!direct) {
         next = copied(b.u, sides, next, wide, 3 * own);
         b.u = next - padded * own;
     }
     b.u_end = foreign_of(chunk, u, sides, next);
-    T *const foreign_forces = direct ? f_foreign : area;
+    T *const foreign_forces = direct ? f_foreign : forces;
     b.into = f + row * chunk.control;
     b.f_end = foreign_forces + padded * foreign;
     b.f = direct ? b.into : b.f_end;

@@ -117,7 +117,7 @@ template <int n, class T, int lanes> void apply(const Batches<T> &b) {
         if constexpr (in_area<n, lanes>) {
             if (i % apart == 0)
                 enter(b, i);
-            gather_area<n, T, lanes>(b.area, first, x);
+            gather<n, T, lanes>(b.area, first, x);
         } else {
             if (i % apart == 0)
                 clear(b, i, 3);
@@ -127,7 +127,7 @@ template <int n, class T, int lanes> void apply(const Batches<T> &b) {
         elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), x, x,
                                     {b.u + next, b.into + next});
         if constexpr (in_area<n, lanes>)
-            scatter_area<n, T, lanes>(b.area, first, x);
+            scatter<n, T, lanes, 1>(b.area + forces_in_row, first, x);
         else
             scatter<n, T, lanes>(b, first, x);
     }
@@ -140,7 +140,7 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
         if constexpr (in_area<n, lanes>) {
             if (i % apart == 0)
                 enter(b, i);
-            gather_area<n, T, lanes>(b.area, first, u);
+            gather<n, T, lanes>(b.area, first, u);
         } else {
             gather<n, T, lanes>(b, first, u);
         }

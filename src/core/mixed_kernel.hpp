@@ -171,17 +171,16 @@ template <int n, int lanes> void mixed_apply(const MixedBatches &b) {
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R u[3 * controls(n)], f[3 * controls(n)], p[controls(m)];
     R stress[6][controls(m)], trace[controls(m)];
-    const Batches<double> places = in_one_row<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
         const std::int32_t *first_pressure = b.first_pressure + i * entities_of_pressure * lanes;
         const Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
-        gather<n, double, lanes>(places, first, u);
+        gather<n, double, lanes>(b.u, first, u);
         gather_pressure<lanes>(low, b.p, first_pressure, p);
         raise(low, m, p);
         mixed_moments<n, lanes>(tet, root_volume<lanes>(tet), u, p, stress, trace);
         forces_of_moments<n, double, lanes>(tet, stress, f);
-        scatter<n, double, lanes>(places, first, f);
+        scatter<n, double, lanes>(b.f, first, f);
         for (int at = 0; at < controls(m); ++at)
             trace[at] *= ladder_scales<m>.top[at] * ladder_scales<m>.top[at];
         lower(m, low, trace);
@@ -196,12 +195,11 @@ template <int n, int lanes> double mixed_work(const MixedBatches &b) {
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R u[3 * controls(n)], p[controls(m)], zero[controls(m)] = {};
     R stress[6][controls(m)], trace[controls(m)], sum = {};
-    const Batches<double> places = in_one_row<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
         const R root = root_volume<lanes>(tet);
         const R compressibility = tet.lambda * root * root * ladder_unit<m>;
-        gather<n, double, lanes>(places, b.first + i * entities(n) * lanes, u);
+        gather<n, double, lanes>(b.u, b.first + i * entities(n) * lanes, u);
         gather_pressure<lanes>(low, b.p, b.first_pressure + i * entities_of_pressure * lanes, p);
         raise(low, m, p);
         mixed_moments<n, lanes>(tet, root, u, zero, stress, trace);
@@ -231,7 +229,6 @@ template <int n, int lanes> void mixed_couple(const MixedBatches &b) {
     constexpr int m = n - 1;
     const int low = b.pressure_degree, entities_of_pressure = pressure_plans[low - 1].entities();
     R f[3 * controls(n)], p[controls(m)];
-    const Batches<double> places = in_one_row<double>(b.u, b.f);
     for (std::int64_t i = 0; i < b.count; ++i) {
         const Batch<double, lanes> tet = batch_of_mixed<lanes>(b, i);
         gather_pressure<lanes>(low, b.p, b.first_pressure + i * entities_of_pressure * lanes, p);
@@ -253,7 +250,7 @@ template <int n, int lanes> void mixed_couple(const MixedBatches &b) {
                 f[3 * p3 + k] += f3;
             }
         });
-        scatter<n, double, lanes>(places, b.first + i * entities(n) * lanes, f);
+        scatter<n, double, lanes>(b.f, b.first + i * entities(n) * lanes, f);
     }
 }
 

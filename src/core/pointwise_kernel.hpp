@@ -52,7 +52,7 @@ void opened(const T *from, const std::int32_t *first, const T *geometry, T *to, 
     using R = Lanes<T, lanes>;
     const Batch<T, lanes> tet = shapes<T, lanes>(geometry);
     R u[3 * controls(n)];
-    gather<n, T, lanes>(in_one_row<T>(from, nullptr), first, u);
+    gather<n, T, lanes>(from, first, u);
     each_control<n - 1>([&](int p, int p1, int p2, int p3) {
         R h[3][3];
         gradient<T, lanes>(tet, u, p, p1, p2, p3, h);
@@ -95,7 +95,7 @@ void closed(const T *from, const std::int32_t *first, const T *geometry, T *to, 
             f[3 * p3 + k] += f3;
         }
     });
-    scatter<n, T, lanes>(in_one_row<T>(nullptr, to), first, f);
+    scatter<n, T, lanes>(to, first, f);
 }
 
 /// The pressure as the last component of each row, elevated to degree n - 1.
