@@ -283,6 +283,8 @@ private:
         require(static_cast<std::int64_t>(x.shape(0)) == k.controls() && y.shape(0) == x.shape(0) &&
                     y.shape(2) == x.shape(2) && x.shape(2) > 0,
                 "x and y must have one row a control and as many sides");
+        require(x.data() + x.size() <= y.data() || y.data() + y.size() <= x.data(),
+                "x and y must not share memory: y is written while x is still read");
         const int sides = static_cast<int>(x.shape(2));
         nb::gil_scoped_release released;
         const Turn turn(turn_);

@@ -8,6 +8,7 @@
 #include "foreign.hpp"
 #include "formed_shapes.hpp"
 #include "large.hpp"
+#include "pieces.hpp"
 
 namespace bezsoma {
 
@@ -142,9 +143,34 @@ void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk
     }
 }
 
+template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
+    if (sides == 1)
+        return apply_in_chunks(u, f, 1);
+    const int beside = sides - sides % sides_beside(lanes_);
+    if (beside > 0)
+        apply_in_chunks(u, f, sides);
+    if (beside < sides)
+        apply_one_by_one(u, f, sides, beside);
+}
+
+/// The sides from `first` on: too few to be worked on beside each other.
+template <class T>
+void ElasticOperator<T>::apply_one_by_one(const T *u, T *f, int sides, int first) {
+    const std::size_t length = size(3 * chunks_.controls);
+    one_.resize(2 * length + 2 * cache_line / sizeof(T));
+    T *const u_one = on_line(one_.data()), *const f_one = on_line(u_one + length);
+    for (int side = first; side < sides; ++side) {
+        each_number(team_, length,
+                    [&](std::size_t i) { u_one[i] = u[i * size(sides) + size(side)]; });
+        apply_in_chunks(u_one, f_one, 1);
+        each_number(team_, length,
+                    [&](std::size_t i) { f[i * size(sides) + size(side)] = f_one[i]; });
+    }
+}
+
 /// One thread comes to the chunks in their order, which is that of the sums: it adds what a chunk
 /// has found for others at once, while it is at hand. Several wait until all chunks are done.
-template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
+template <class T> void ElasticOperator<T>::apply_in_chunks(const T *u, T *f, int sides) {
     const bool alone = team_.size() == 1;
     const std::int64_t row = 3 * std::int64_t{sides};
     foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)) +
@@ -159,11 +185,6 @@ template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
         team_.run(parts, [&](std::size_t c, std::size_t) {
             add_rows(chunks_.parts[c].added, foreign, f, row);
         });
-}
-
-/// Several sides are padded to whole registers while a chunk works on them.
-template <class T> int ElasticOperator<T>::width(int sides) const {
-    return sides == 1 ? 1 : (sides + lanes_ - 1) / lanes_ * lanes_;
 }
 
 template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
@@ -181,28 +202,10 @@ template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
             .u_end = nullptr,
             .f = nullptr,
             .f_end = nullptr,
-            .into = nullptr,
             .area = nullptr};
 }
 
 namespace {
-
-/// Rows of `from` values each become rows of `to` values; returns the end of what was written.
-template <class T> T *copied(const T *x, std::int64_t from, T *y, std::int64_t to, std::int64_t n) {
-    const std::int64_t both = std::min(from, to);
-    if (from == to) {
-        for (std::int64_t i = 0; i < n * to; ++i)
-            y[i] = x[i];
-    } else {
-        for (std::int64_t i = 0; i < n; ++i) {
-            for (std::int64_t k = 0; k < both; ++k)
-                y[i * to + k] = x[i * from + k];
-            for (std::int64_t k = both; k < to; ++k)
-                y[i * to + k] = T{};
-        }
-    }
-    return y + n * to;
-}
 
 /// The forces of n controls of an area, one after another.
 template <class T> void forces_of_area(const T *area, std::int64_t n, T *f) {
@@ -218,21 +221,9 @@ template <class T> void make_least(std::vector<T> &v, std::size_t n) {
 
 } // namespace
 
-/// The foreign controls of a chunk one after another, sides padded; returns the end.
-template <class T>
-T *ElasticOperator<T>::foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const {
-    const std::int64_t row = 3 * std::int64_t{sides};
-    if (width(sides) == sides)
-        return copy_rows(chunk.foreign, u, row, to);
-    for (const std::int32_t control : chunk.foreign)
-        to = copied(u + row * control, sides, to, width(sides), 3);
-    return to;
-}
-
-/// Whether a chunk may read its part of u itself: a gather may read past its end.
-template <class T> bool ElasticOperator<T>::in_place(const Chunk &chunk, int sides) const {
-    const std::int64_t after = chunks_.controls - chunk.control - chunk.owned;
-    return width(sides) == sides && 3 * after * sides >= std::int64_t{padding};
+/// A gather reads past the end of the own part of u.
+template <class T> bool ElasticOperator<T>::may_read_past(const Chunk &chunk) const {
+    return 3 * (chunks_.controls - chunk.control - chunk.owned) >= std::int64_t{padding};
 }
 
 /// Forces of a chunk's tets: on own controls in f, on foreign ones added to f by a thread that is
@@ -243,32 +234,23 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
     if (sides == 1 && works_in_area())
         return forces_in_area(c, u, f, f_foreign, alone, scratch);
     const Chunk &chunk = chunks_.parts[c];
-    const std::int64_t own = chunk.owned, foreign = std::ssize(chunk.foreign), wide = width(sides);
-    const std::int64_t row = 3 * std::int64_t{sides}, padded = 3 * wide;
-    const bool direct = in_place(chunk, sides);
-    const std::size_t length = size(padded * chunks_.largest) + padding;
-    make_least(scratch, 2 * length + 2 * cache_line / sizeof(T));
+    const std::int64_t own = chunk.owned, foreign = std::ssize(chunk.foreign), row = 3 * sides;
+    make_least(scratch, size(row * chunks_.largest) + padding + cache_line / sizeof(T));
     Batches<T> b = batches(c);
-    T *next = on_line(scratch.data()), *const forces = on_line(next + length);
+    T *next = on_line(scratch.data());
     b.u = u + row * chunk.control;
-    if (!direct) {
-        next = copied(b.u, sides, next, wide, 3 * own);
-        b.u = next - padded * own;
+    if (!may_read_past(chunk)) {
+        next = std::copy_n(b.u, row * own, next);
+        b.u = next - row * own;
     }
-    b.u_end = foreign_of(chunk, u, sides, next);
-    T *const foreign_forces = direct ? f_foreign : forces;
-    b.into = f + row * chunk.control;
-    b.f_end = foreign_forces + padded * foreign;
-    b.f = direct ? b.into : b.f_end;
-    std::fill_n(foreign_forces, padded * foreign, T{});
+    b.u_end = copy_rows(chunk.foreign, u, row, next);
+    b.f = f + row * chunk.control;
+    b.f_end = f_foreign + row * foreign;
+    std::fill_n(f_foreign, row * foreign, T{});
     if (sides == 1)
         kernel_.apply(b);
     else
-        kernel_.apply_many(b, static_cast<int>(wide));
-    if (!direct) {
-        copied(foreign_forces, wide, f_foreign, sides, 3 * foreign);
-        copied(b.f, wide, b.into, sides, 3 * own);
-    }
+        kernel_.apply_many(b, sides);
     if (alone)
         add_rows(chunk.foreign, f_foreign, row, f, row);
 }
@@ -299,9 +281,9 @@ void ElasticOperator<T>::forces_in_area(std::size_t c, const T *u, T *f, T *f_fo
     const std::int64_t foreign = std::ssize(chunk.foreign);
     Batches<T> b = with_area(c, u, scratch);
     const T *const found = b.area - row_of_area * foreign;
-    b.into = f + 3 * std::int64_t{chunk.control};
+    b.f = f + 3 * std::int64_t{chunk.control};
     kernel_.apply(b);
-    forces_of_area(b.area, chunk.owned, b.into);
+    forces_of_area(b.area, chunk.owned, b.f);
     if (alone)
         add_rows(chunk.foreign, found + forces_in_row, row_of_area, f, 3);
     else
@@ -320,9 +302,9 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
         make_least(scratch, size(3 * std::int64_t{chunks_.largest}) + padding);
         Batches<T> b = batches(c);
         b.u = scratch.data();
-        b.u_end = foreign_of(chunk, u, 1,
-                             copied(u + 3 * std::int64_t{chunk.control}, 1, scratch.data(), 1,
-                                    3 * std::int64_t{chunk.owned}));
+        T *const past = std::copy_n(u + 3 * std::int64_t{chunk.control},
+                                    3 * std::int64_t{chunk.owned}, scratch.data());
+        b.u_end = copy_rows(chunk.foreign, u, 3, past);
         sums[c] = kernel_.work(b);
     });
     return std::accumulate(sums.begin(), sums.end(), 0.0);

@@ -61,15 +61,15 @@ public:
     const Chunks &chunks() const { return chunks_; }
 
 private:
-    int width(int sides) const;
     void pack(const ElasticTets &tets);
     void keep_shape(const TetShape &shape, T *geometry) const;
     void keep_points(const ElasticTets &tets, const Chunk &chunk, std::int64_t tet);
     Batches<T> batches(std::size_t chunk) const;
-    T *foreign_of(const Chunk &chunk, const T *u, int sides, T *to) const;
-    bool in_place(const Chunk &chunk, int sides) const;
+    bool may_read_past(const Chunk &chunk) const;
     bool works_in_area() const { return kernel_.row == row_of_area; }
     Batches<T> with_area(std::size_t chunk, const T *u, std::vector<T> &scratch) const;
+    void apply_in_chunks(const T *u, T *f, int sides);
+    void apply_one_by_one(const T *u, T *f, int sides, int first);
     void forces_in_area(std::size_t chunk, const T *u, T *f, T *f_foreign, bool alone,
                         std::vector<T> &scratch);
     void forces_of_chunk(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides, bool alone,
@@ -88,6 +88,7 @@ private:
     std::vector<T> lame_;                 // (regions + 1, 2), the last row zero
     std::vector<T> foreign_;              // (foreign controls, 3, sides) of all chunks, or of one,
                                           // from a line of the cache on
+    std::vector<T> one_;                  // u and f of one side, where several come
     std::vector<std::vector<T>> scratch_; // a thread each
 };
 

@@ -24,11 +24,9 @@ constexpr std::int64_t row_of_area = 8, forces_in_row = 4;
 /// u, f (own controls, 3), u_end, f_end the ends of the same of foreign controls. Past both parts
 /// of u 16 numbers may be read but are not used. Own forces are cleared when a stretch first meets
 /// them, met (batches,) being one past the own controls met so far; foreign ones are added to.
-/// `into` is where own forces go in the end, f itself or what they are copied to: Kernel::apply
-/// calls for it ahead.
-///
 /// area (own controls, row_of_area), foreign ones before: what kernels with such rows have in place
-/// of u_end, f and f_end. Own controls come into it from u when a stretch first meets them.
+/// of u_end and f_end, and where they leave forces. Own controls come into it from u when a stretch
+/// first meets them, and f is only called for, where own forces will go.
 template <class T> struct Batches {
     std::int64_t count;
     const std::int32_t *first;
@@ -38,7 +36,6 @@ template <class T> struct Batches {
     const T *lame;
     const T *u, *u_end;
     T *f, *f_end;
-    T *into;
     T *area;
 };
 
@@ -73,8 +70,12 @@ struct BlockKernel {
                  double beta, double *p);
 };
 
+/// Right-hand sides that `Kernel::apply_many` works on at once at least.
+constexpr int sides_beside(int lanes) { return lanes < 4 ? lanes : 4; }
+
 /// What is done on batches. apply_many takes several right-hand sides beside each other, u and f
-/// (controls, 3, sides): lanes are sides there, and batches are read tet by tet.
+/// (controls, 3, sides): the first ones, as many as there are whole groups of `sides_beside`, and
+/// leaves the forces of the others zero. Lanes are sides there.
 ///
 /// row: the numbers that `apply` and `work` take a control to have. 3; or row_of_area:
 /// displacements and forces of a control beside each other, each with a spare number, so that whole

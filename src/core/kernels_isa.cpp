@@ -15,7 +15,6 @@ namespace bezsoma::BEZSOMA_ISA {
 /// From degree 3 on tets share less, and runs are longer than a control: to bring them into an area
 /// takes 3 to 20 % more than it saves.
 template <int n, int lanes> constexpr bool in_area = n <= 2 && lanes >= 4;
-template <int n, int lanes> constexpr int row_of_control = in_area<n, lanes> ? int{row_of_area} : 3;
 
 /// Where a run begins in rows of 3 numbers a side.
 template <int n, int lanes> BEZSOMA_INLINE std::int64_t run(std::int32_t first, int sides = 1) {
@@ -114,22 +113,30 @@ template <int n, class T, int lanes> void apply(const Batches<T> &b) {
     for (std::int64_t i = 0; i < b.count; ++i) {
         const std::int32_t *first = b.first + i * entities(n) * lanes;
         call_batch<n, T, lanes>(b, i + 2);
-        if constexpr (in_area<n, lanes>) {
-            if (i % apart == 0)
-                enter(b, i);
-            gather<n, T, lanes>(b.area, first, x);
-        } else {
-            if (i % apart == 0)
-                clear(b, i, 3);
-            gather<n, T, lanes>(b, first, x);
-        }
+        if (i % apart == 0)
+            clear(b, i, 3);
+        gather<n, T, lanes>(b, first, x);
         const std::int64_t next = 3 * next_stretch(b, i) + i % apart * called<n, T, lanes>;
         elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), x, x,
-                                    {b.u + next, b.into + next});
-        if constexpr (in_area<n, lanes>)
-            scatter<n, T, lanes, 1>(b.area + forces_in_row, first, x);
-        else
-            scatter<n, T, lanes>(b, first, x);
+                                    {b.u + next, b.f + next});
+        scatter<n, T, lanes>(b, first, x);
+    }
+}
+
+template <int n, class T, int lanes> void apply_in_area(const Batches<T> &given) {
+    // A copy no store could change: its pointers stay in registers, which degree 3 has not.
+    const Batches<T> b = given;
+    Lanes<T, lanes> x[3 * controls(n)]; // displacements, then forces
+    for (std::int64_t i = 0; i < b.count; ++i) {
+        const std::int32_t *first = b.first + i * entities(n) * lanes;
+        call_batch<n, T, lanes>(b, i + 2);
+        if (i % apart == 0)
+            enter(b, i);
+        gather<n, T, lanes>(b.area, first, x);
+        const std::int64_t next = 3 * next_stretch(b, i) + i % apart * called<n, T, lanes>;
+        elastic_forces<n, T, lanes>(batch_of_tets<n, T, lanes>(b, i), x, x,
+                                    {b.u + next, b.f + next});
+        scatter<n, T, lanes, 1>(b.area + forces_in_row, first, x);
     }
 }
 
@@ -154,54 +161,73 @@ template <int n, class T, int lanes> double work(const Batches<T> &b) {
     return all;
 }
 
-template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
-    using R = Lanes<T, lanes>;
-    R x[3 * controls(n)]; // displacements, then forces
+/// What one lane of a batch holds, in all of `beside` lanes.
+template <class T, int lanes, int beside>
+BEZSOMA_INLINE Batch<T, beside> tet_of_lane(const Batch<T, lanes> &batch, int lane) {
+    Batch<T, beside> tet = {};
+    for (int k = 0; k < 9; ++k)
+        tet.g[k / 3][k % 3] = Lanes<T, beside>{} + batch.g[k / 3][k % 3][lane];
+    tet.lambda = Lanes<T, beside>{} + batch.lambda[lane];
+    tet.mu = Lanes<T, beside>{} + batch.mu[lane];
+    return tet;
+}
+
+/// Lanes are sides here, `beside` at once, and batches are read tet by tet.
+template <int n, class T, int lanes, int beside>
+void apply_beside(const Batches<T> &given, int sides) {
+    const Batches<T> b = given;          // in registers, as in `apply_in_area`
+    Lanes<T, beside> x[3 * controls(n)]; // displacements, then forces
+    std::int64_t next = 0;
     for (std::int64_t i = 0; i < b.count; ++i) {
-        if (i % apart == 0)
+        if (i % apart == 0) {
             clear(b, i, 3 * sides);
-        const Batch<T, lanes> all = batch_of_tets<n, T, lanes>(b, i);
-        const std::int64_t stretch =
-            3 * next_stretch(b, i) * sides + i % apart * lanes * called<n, T, lanes>;
+            next = 3 * next_stretch(b, i) * sides;
+        }
+        const Batch<T, lanes> batch = batch_of_tets<n, T, lanes>(b, i);
         for (int lane = 0; lane < lanes; ++lane) {
-            const std::int32_t *first = b.first + i * entities(n) * lanes;
-            Batch<T, lanes> tet = {};
-            for (int k = 0; k < 9; ++k)
-                tet.g[k / 3][k % 3] = R{} + all.g[k / 3][k % 3][lane];
-            tet.lambda = R{} + all.lambda[lane];
-            tet.mu = R{} + all.mu[lane];
-            // What a batch brings of one side a tet brings of as many as there are lanes.
-            const std::int64_t next = stretch + lane * called<n, T, lanes>;
-            for (int side = 0; side < sides; side += lanes) {
+            const std::int32_t *first = b.first + i * entities(n) * lanes + lane;
+            const Batch<T, beside> tet = tet_of_lane<T, lanes, beside>(batch, lane);
+            for (int side = 0; side + beside <= sides; side += beside) {
                 each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     const T *from =
-                        place(b.u, b.u_end, run<n, lanes>(first[entity * lanes + lane], sides));
+                        place(b.u, b.u_end, run<n, lanes>(first[entity * lanes], sides)) + side;
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
-                        x[entity_order<n>.row[row + r]] = load<T, lanes>(from + r * sides + side);
+                        x[entity_order<n>.row[row + r]] = load<T, beside>(from + r * sides);
                 });
-                elastic_forces<n, T, lanes>(tet, x, x, {b.u + next, b.f + next});
+                elastic_forces<n, T, beside>(tet, x, x, {b.u + next, b.f + next});
+                // What a batch brings of one side a tet brings of as many as there are lanes.
+                next += called<n, T, beside>;
                 each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
-                    T *to = place(b.f, b.f_end, run<n, lanes>(first[entity * lanes + lane], sides));
+                    T *to = place(b.f, b.f_end, run<n, lanes>(first[entity * lanes], sides)) + side;
 #pragma GCC unroll 16
                     for (int r = 0; r < rows; ++r)
-                        store<T, lanes>(to + r * sides + side,
-                                        load<T, lanes>(to + r * sides + side) +
-                                            x[entity_order<n>.row[row + r]]);
+                        store<T, beside>(to + r * sides, load<T, beside>(to + r * sides) +
+                                                             x[entity_order<n>.row[row + r]]);
                 });
             }
         }
     }
 }
 
+template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
+    constexpr int few = sides_beside(lanes);
+    if constexpr (lanes >= 2 * few)
+        if (sides % (2 * few) == 0)
+            return apply_beside<n, T, lanes, 2 * few>(b, sides);
+    apply_beside<n, T, lanes, few>(b, sides);
+}
+
 constexpr int lanes64 = BEZSOMA_BYTES / 8, lanes32 = BEZSOMA_BYTES / 4;
 
 template <int n, class T, int lanes> static constexpr Kernel<T> kernel_of_degree() {
-    if constexpr (n <= BEZSOMA_HIGHEST_DEGREE)
-        return {row_of_control<n, lanes>, apply<n, T, lanes>, apply_many<n, T, lanes>,
+    if constexpr (n > BEZSOMA_HIGHEST_DEGREE)
+        return {};
+    else if constexpr (in_area<n, lanes>)
+        return {row_of_area, apply_in_area<n, T, lanes>, apply_many<n, T, lanes>,
                 work<n, T, lanes>};
     else
-        return {};
+        return {3, apply<n, T, lanes>, apply_many<n, T, lanes>, work<n, T, lanes>};
 }
 
 #define BEZSOMA_DEGREES(T, lanes)                                                                  \

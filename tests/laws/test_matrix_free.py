@@ -131,7 +131,7 @@ def test_chunks_add_what_they_share(degree: int) -> None:
     K = matrix_of(net)
     for instructions, threads in product(SETS, (1, 2)):
         operator = MatrixFree(net, LAME, threads, instructions)
-        for sides in (1, 5):
+        for sides in (1, 5, 12):
             u = vectors(net, sides)
             expected = np.stack([K @ u[..., s] for s in range(sides)], axis=-1)
             assert apart(operator @ u, expected) < ROUNDING
@@ -257,7 +257,7 @@ def test_what_forces_held_before_does_not_matter() -> None:
     for degree, cells in CHUNKED.items():
         net = ControlNet(materials(block(cells=cells, irregular=0.3)), degree)
         operator = MatrixFree(net, LAME, 2)
-        for sides in (1, 3, 8):
+        for sides in (1, 3, 5, 8):
             u = vectors(net, sides)
             f = np.full_like(u, np.nan)
             operator.kernel.apply(u, f)
@@ -290,6 +290,10 @@ def test_shapes_that_do_not_fit_are_refused() -> None:
         operator @ np.zeros((net.count - 1, 3))
     with pytest.raises(ValueError, match="as many sides"):
         operator.kernel.apply(np.zeros((net.count, 3, 2)), np.zeros((net.count, 3, 1)))
+    both = np.zeros((net.count + 1, 3, 1))
+    for y in (both[:-1], both[1:]):
+        with pytest.raises(ValueError, match="must not share memory"):
+            operator.kernel.apply(both[:-1], y)
     with pytest.raises(ValueError, match="region must number"):
         MatrixFree(net, LAME[:0]).kernel  # noqa: B018
     with pytest.raises(ValueError, match="lacks that instruction set"):

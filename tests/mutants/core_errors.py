@@ -227,8 +227,8 @@ CORE_ERRORS = (
     Mutant(
         "several sides that all take the material of a batch's first tet",
         f"{CORE}/kernels_isa.cpp",
-        "tet.mu = R{} + all.mu[lane];",
-        "tet.mu = R{} + all.mu[0];",
+        "tet.mu = Lanes<T, beside>{} + batch.mu[lane];",
+        "tet.mu = Lanes<T, beside>{} + batch.mu[0];",
         MATRIX_FREE,
     ),
     Mutant(

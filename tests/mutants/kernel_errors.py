@@ -86,8 +86,13 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "several sides whose forces replace those of the tets before",
-            "load<T, lanes>(to + r * sides + side) +",
-            "0 * load<T, lanes>(to + r * sides + side) +",
+            "load<T, beside>(to + r * sides) +",
+            "0 * load<T, beside>(to + r * sides) +",
+        ),
+        (
+            "several sides that each tet takes a group too few of",
+            "side + beside <= sides; side += beside",
+            "side + beside < sides; side += beside",
         ),
         ("the work of the first lane taken for all", "all += sum[l];", "all += sum[0];"),
     ),
@@ -96,13 +101,18 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "forces on shared controls kept from the call before",
-            "std::fill_n(foreign_forces, padded * foreign, T{});",
+            "std::fill_n(f_foreign, row * foreign, T{});",
             ";",
         ),
         (
             "a last own control whose forces stay in the area",
-            "forces_of_area(b.area, chunk.owned, b.into);",
-            "forces_of_area(b.area, chunk.owned - 1, b.into);",
+            "forces_of_area(b.area, chunk.owned, b.f);",
+            "forces_of_area(b.area, chunk.owned - 1, b.f);",
+        ),
+        (
+            "sides left over that all take the numbers of the first of them",
+            "u_one[i] = u[i * size(sides) + size(side)];",
+            "u_one[i] = u[i * size(sides) + size(first)];",
         ),
         (
             "foreign controls whose forces an area keeps from the chunk before",
