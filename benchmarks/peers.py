@@ -51,7 +51,8 @@ def main() -> None:
                     record.kept(options.name, found)
                 tets.unlink()
     record.stored(options.name, found, report(found))
-    plots.peers(ratios(found["rows"]), options.plot)
+    before = (row for name in options.beside for row in record.read(name)["rows"])
+    plots.peers(ratios([*before, *found["rows"]]), options.plot)
 
 
 def configurations(engine: str, degree: int, unknowns: int) -> list[str]:
@@ -222,6 +223,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--long", type=float, default=10, help="longer runs are not repeated, s")
     parser.add_argument("--name", default="peers", help="of the files in benchmarks/results")
     parser.add_argument("--plot", default="", help="where to draw")
+    parser.add_argument("--beside", nargs="+", default=[], help="results that are drawn, too")
     return parser.parse_args()
 
 

@@ -115,6 +115,7 @@ def peers(rows: list[Run], path: str) -> None:
     series = sorted({(row["size"], row["threads"]) for row in rows})
     for (size, threads), mark in zip(series, ("o-", "o--", "s-", "s--"), strict=False):
         own = [row for row in rows if (row["size"], row["threads"]) == (size, threads)]
+        own.sort(key=lambda row: row["degree"])
         ax.plot(
             [row["degree"] for row in own],
             [row["ratio"] for row in own],

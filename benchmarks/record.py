@@ -54,6 +54,12 @@ def kept(name: str, found: dict[str, Any]) -> None:
     (RESULTS / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
 
 
+def read(name: str) -> dict[str, Any]:
+    """The numbers that were kept under a name."""
+    found: dict[str, Any] = json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
+    return found
+
+
 def table(head: list[str], rows: list[list[str]]) -> str:
     """Markdown."""
     lines = [head, ["---"] * len(head), *rows]

@@ -322,3 +322,36 @@ def test_the_case_file_says_how_many(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"solver\.threads") as caught:
             bz.read_case(case_file(tmp_path, ("[output]", text), name="wrong.toml"))
         assert said in str(caught.value)
+
+
+SOLVED_BESIDE_BLAS = """
+import os
+from pathlib import Path
+import numpy
+import bezsoma as bz
+
+of_blas = [task / "schedstat" for task in Path("/proc/self/task").iterdir()]
+of_blas = [task for task in of_blas if task.parent.name != str(os.getpid())]
+
+def run():
+    return [task.read_text().split()[0] for task in of_blas]
+
+mesh = bz.block(cells=20)
+top = [bz.Traction("top", value=(1e-3, 0, 0))]
+body = bz.Body(mesh, 2, bz.LinearElastic(E=1, nu=0.3), [bz.Fixed("bottom")], top)
+before = run()
+bz.solve(body, solver="multigrid", threads=1)
+print(len(of_blas), before == run())
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/schedstat").exists(), reason="Linux tells what threads do")
+def test_a_solve_lets_the_threads_of_blas_sleep() -> None:
+    """Woken they wait for more to do without sleeping, on cores that the solver's threads need."""
+    own = {name: text for name, text in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    command = [sys.executable, "-S", "-c", prelude() + SOLVED_BESIDE_BLAS]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=own)
+    threads, asleep = done.stdout.split()
+    if threads == "0":
+        pytest.skip("BLAS has no threads of its own here")
+    assert asleep == "True"

@@ -125,8 +125,18 @@ def _equations(parts: Parts, part: int, points: Floats) -> Floats:
 
 
 def _fewer(rows: Floats) -> Floats:
-    """At most as many rows as columns, with the same lengths of images."""
-    return np.asarray(np.linalg.qr(rows, mode="r")) if len(rows) > rows.shape[1] else rows
+    """At most as many rows as columns, with the same lengths of images.
+
+    In pieces: a tall matrix at once wakes the threads of BLAS, which wait for more to do without
+    sleeping, for a tenth of a second, on cores that the solver's threads are about to use.
+    """
+    columns = rows.shape[1]
+    while len(rows) > columns:
+        piece = min(len(rows), 256)
+        whole = np.zeros((-(-len(rows) // piece), piece, columns))
+        whole.reshape(-1, columns)[: len(rows)] = rows
+        rows = np.linalg.qr(whole, mode="r").reshape(-1, columns)
+    return rows
 
 
 def _null_space(rows: Floats, tolerance: float) -> Floats:
