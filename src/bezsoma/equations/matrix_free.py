@@ -72,9 +72,9 @@ class MatrixFree:
     def __matmul__(self, x: Floats) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N.
 
-        Sides are worked on eight or four at a time: eight cost 3.6 to 8 times one (degrees 1 to
-        4), four 2.4 to 4.5 times. What is left over goes one by one. Eight at once take a tenth
-        less where x begins at a line of the cache (`on_lines`).
+        Sides are worked on eight or four at a time (AVX-512; four, or two, with less): eight cost
+        3.6 to 8 times one at degrees 1 to 4, four 2.4 to 4.5 times. What is left over goes one by
+        one. Eight at once take a tenth less where x begins at a line of the cache (`on_lines`).
         """
         sides = np.ascontiguousarray(x, dtype=np.float64).reshape(len(x), 3, -1)
         y = on_lines(sides.shape)

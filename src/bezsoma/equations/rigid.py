@@ -135,7 +135,7 @@ def _fewer(rows: Floats) -> Floats:
         piece = min(len(rows), 256)
         whole = np.zeros((-(-len(rows) // piece), piece, columns))
         whole.reshape(-1, columns)[: len(rows)] = rows
-        rows = np.linalg.qr(whole, mode="r").reshape(-1, columns)
+        rows = np.asarray(np.linalg.qr(whole, mode="r")).reshape(-1, columns)
     return rows
 
 
