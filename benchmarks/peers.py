@@ -52,7 +52,7 @@ def main() -> None:
                 tets.unlink()
     record.stored(options.name, found, report(found))
     before = (row for name in options.beside for row in record.read(name)["rows"])
-    plots.peers(ratios([*before, *found["rows"]]), options.plot)
+    plots.peers(ratios(newest([*before, *found["rows"]])), options.plot)
 
 
 def configurations(engine: str, degree: int, unknowns: int) -> list[str]:
@@ -166,6 +166,11 @@ def ratios(rows: list[Run]) -> list[Run]:
     """What the picture shows: how many times longer the best peer took, where there is one."""
     beside = ((row, best_peer(row)) for row in rows if row["kept"].get("bezsoma"))
     return [row | {"ratio": peer["slower"]} for row, peer in beside if peer]
+
+
+def newest(rows: list[Run]) -> list[Run]:
+    """The last row of each problem."""
+    return list({(row["size"], row["threads"], row["degree"]): row for row in rows}.values())
 
 
 def report(found: Run) -> str:
