@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -397,8 +399,9 @@ def test_phantoms_that_cannot_be_made() -> None:
 
 def test_a_reader_that_hangs_is_stopped(tmp_path: Path) -> None:
     path = image(tmp_path / "a.nrrd", np.full((12, 15, 20), -1000, np.int16))
-    with Child(seconds=0.0) as hasty:
-        refused(["longer than 0 s"], read_volume, path, child=hasty)
+    with Child(seconds=0.2) as hanging:
+        os.kill(hanging._running().pid, signal.SIGSTOP)
+        refused(["longer than 0.2 s"], read_volume, path, child=hanging)
 
 
 def test_a_reader_that_dies_is_told_and_replaced(tmp_path: Path) -> None:
