@@ -486,16 +486,16 @@ NB_MODULE(_core, m) {
     nb::class_<MatrixFree>(m, "MatrixFree")
         .def(nb::init<const Walk &, std::size_t, const std::string &, bool>(), "walk"_a,
              "threads"_a = 0, "instructions"_a = "", "single"_a = false)
-        .def("apply", &MatrixFree::apply, "x"_a, "y"_a)
+        .def("apply", &MatrixFree::apply, "x"_a, "y"_a.noconvert())
         .def("work", &MatrixFree::work, "x"_a)
-        .def("apply_single", &MatrixFree::apply_single, "x"_a, "y"_a)
+        .def("apply_single", &MatrixFree::apply_single, "x"_a, "y"_a.noconvert())
         .def_prop_ro("instructions", [](const MatrixFree &k) { return k.kernels().name; })
         .def_prop_ro("threads", [](MatrixFree &k) { return k.team().size(); });
     nb::class_<MixedFree>(m, "MixedFree")
         .def(nb::init<const Walk &, int, In<std::int32_t, -1, -1>, std::size_t,
                       const std::string &>(),
              "walk"_a, "pressure_degree"_a, "first"_a, "threads"_a = 0, "instructions"_a = "")
-        .def("apply", &MixedFree::apply, "u"_a, "p"_a, "f"_a, "g"_a)
+        .def("apply", &MixedFree::apply, "u"_a, "p"_a, "f"_a.noconvert(), "g"_a.noconvert())
         .def("work", &MixedFree::work, "u"_a, "p"_a)
         .def("mass", &MixedFree::mass, "weight"_a, "p"_a, "g"_a)
         .def_prop_ro("instructions", [](const MixedFree &k) { return k.kernels().name; })

@@ -153,19 +153,24 @@ template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
         apply_one_by_one(u, f, sides, beside);
 }
 
-/// The sides from `first` on: too few to be worked on beside each other.
+/// The sides from `first` on, too few to be worked on beside each other, in vectors of their own.
 template <class T>
 void ElasticOperator<T>::apply_one_by_one(const T *u, T *f, int sides, int first) {
-    const std::size_t length = size(3 * chunks_.controls);
-    one_.resize(2 * length + 2 * cache_line / sizeof(T));
-    T *const u_one = on_line(one_.data()), *const f_one = on_line(u_one + length);
-    for (int side = first; side < sides; ++side) {
-        each_number(team_, length,
-                    [&](std::size_t i) { u_one[i] = u[i * size(sides) + size(side)]; });
-        apply_in_chunks(u_one, f_one, 1);
-        each_number(team_, length,
-                    [&](std::size_t i) { f[i * size(sides) + size(side)] = f_one[i]; });
-    }
+    constexpr std::size_t line = cache_line / sizeof(T);
+    const std::size_t numbers = size(3 * chunks_.controls), many = size(sides - first);
+    const std::size_t length = (numbers + line - 1) / line * line;
+    one_.resize(2 * many * length + line);
+    T *const u_one = on_line(one_.data()), *const f_one = u_one + many * length;
+    each_number(team_, numbers, [&](std::size_t i) {
+        for (std::size_t k = 0; k < many; ++k)
+            u_one[k * length + i] = u[i * size(sides) + size(first) + k];
+    });
+    for (std::size_t k = 0; k < many; ++k)
+        apply_in_chunks(u_one + k * length, f_one + k * length, 1);
+    each_number(team_, numbers, [&](std::size_t i) {
+        for (std::size_t k = 0; k < many; ++k)
+            f[i * size(sides) + size(first) + k] = f_one[k * length + i];
+    });
 }
 
 /// One thread comes to the chunks in their order, which is that of the sums: it adds what a chunk

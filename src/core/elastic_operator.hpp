@@ -88,7 +88,7 @@ private:
     std::vector<T> lame_;                 // (regions + 1, 2), the last row zero
     std::vector<T> foreign_;              // (foreign controls, 3, sides) of all chunks, or of one,
                                           // from a line of the cache on
-    std::vector<T> one_;                  // u and f of one side, where several come
+    std::vector<T> one_;                  // u and f of sides that go by themselves
     std::vector<std::vector<T>> scratch_; // a thread each
 };
 

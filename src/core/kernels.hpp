@@ -70,7 +70,7 @@ struct BlockKernel {
                  double beta, double *p);
 };
 
-/// Right-hand sides that `Kernel::apply_many` works on at once at least.
+/// Right-hand sides that `Kernel::apply_many` works on at once, if not twice as many.
 constexpr int sides_beside(int lanes) { return lanes < 4 ? lanes : 4; }
 
 /// What is done on batches. apply_many takes several right-hand sides beside each other, u and f

@@ -15,6 +15,8 @@ import tolerances
 from bezsoma.case.build import made
 from bezsoma.case.quantities import Measured
 from bezsoma.case.sources import found
+from bezsoma.errors import MissingExtra
+from bezsoma.view import rays
 from cases.written import BLOCK, case_file
 
 
@@ -284,3 +286,21 @@ def test_the_head_by_formula_is_a_case_like_any_other(root: Path, tmp_path: Path
     path = tmp_path / "again.toml"
     path.write_text(case.text)
     assert bz.read_case(path).file == case.file
+
+
+def test_nothing_is_lost_where_no_picture_can_be_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some platforms have no wheel of what draws."""
+
+    def absent() -> None:
+        raise MissingExtra("pictures need the package embreex")
+
+    monkeypatch.setattr(rays, "_embree", absent)
+    results = bz.run_case(
+        bz.read_case(case_file(tmp_path, ("pictures = []", 'pictures = "front"'))), tmp_path / "out"
+    )
+    assert results.summary["pictures"] == []
+    assert any("no pictures were drawn" in text for text in results.summary["warnings"])
+    assert "no pictures were drawn" in (tmp_path / "out" / "README.txt").read_text()
+    assert (tmp_path / "out" / "displacement.vtu").exists()

@@ -290,6 +290,11 @@ def test_shapes_that_do_not_fit_are_refused() -> None:
         operator @ np.zeros((net.count - 1, 3))
     with pytest.raises(ValueError, match="as many sides"):
         operator.kernel.apply(np.zeros((net.count, 3, 2)), np.zeros((net.count, 3, 1)))
+    for shape in ((net.count, 2, 3), (net.count, 6), (3 * net.count,)):
+        with pytest.raises(ValueError, match=r"has to be \(c, 3\)"):
+            operator @ np.zeros(shape)
+    with pytest.raises(TypeError):
+        operator.kernel.apply(np.zeros((net.count, 3, 1)), np.zeros((net.count, 3, 1), np.float32))  # type: ignore[arg-type]
     both = np.zeros((net.count + 1, 3, 1))
     for y in (both[:-1], both[1:]):
         with pytest.raises(ValueError, match="must not share memory"):

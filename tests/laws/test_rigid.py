@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from bezsoma.arrays import Bools, Floats
+from bezsoma.equations import rigid
 from bezsoma.equations.assembled import assembled
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.parts import parts_of
@@ -159,3 +160,21 @@ def test_supports_of_a_body_hold_it() -> None:
     body = Body(block(), 3, LinearElastic(1.0, 0.3), [Fixed("top")])
     net = ControlNet(body.mesh, body.degree)
     refuse_rigid_motions(net, prescribed(body, net).mask)
+
+
+def test_all_of_many_held_rows_count() -> None:
+    """The bottom alone would let it slide and turn: the few rows at the top come last of many."""
+    mesh = block(cells=24)
+    supports = [Fixed("bottom", components="z"), Fixed("top", components="xy")]
+    body = Body(mesh, 1, LinearElastic(E=1.0, nu=0.3), supports)
+    net = ControlNet(mesh, 1)
+    refuse_rigid_motions(net, prescribed(body, net).mask)
+
+
+@pytest.mark.parametrize("count", [0, 1, 6, 7, 255, 256, 257, 1000, 70_000])
+def test_fewer_rows_have_images_of_the_same_lengths(count: int) -> None:
+    rows = np.random.default_rng(count).standard_normal((count, 6))
+    rows[:, 5] = rows[:, 4]
+    found = rigid._fewer(rows)
+    assert len(found) <= max(6, min(count, 6))
+    assert np.abs(found.T @ found - rows.T @ rows).max(initial=0) <= 1e-12 * max(1, count)

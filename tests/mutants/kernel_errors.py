@@ -111,8 +111,8 @@ OPERATOR = (
         ),
         (
             "sides left over that all take the numbers of the first of them",
-            "u_one[i] = u[i * size(sides) + size(side)];",
-            "u_one[i] = u[i * size(sides) + size(first)];",
+            "u_one[k * length + i] = u[i * size(sides) + size(first) + k];",
+            "u_one[k * length + i] = u[i * size(sides) + size(first)];",
         ),
         (
             "foreign controls whose forces an area keeps from the chunk before",

@@ -13,6 +13,7 @@ import numpy as np
 
 from bezsoma.case.reading import Case
 from bezsoma.case.readme import readme
+from bezsoma.errors import MissingExtra
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.field import Field
 from bezsoma.results import write_fields
@@ -50,7 +51,11 @@ def write_results(
     if case.file.output.pictures:
         progress("write", None, "pictures")
         mark = summary.get("unfinished", {}).get("mark", "")
-        summary["pictures"] = _write_pictures(folder, case, solution, mark)
+        try:
+            summary["pictures"] = _write_pictures(folder, case, solution, mark)
+        except MissingExtra as error:  # what was solved is not lost for want of pictures
+            summary["warnings"] = [*summary["warnings"], f"no pictures were drawn: {error}"]
+            progress("write", None, summary["warnings"][-1])
     names = [path.name for path in folder.iterdir()]
     summary["files"] = sorted([*names, README, SUMMARY])
     (folder / README).write_text(readme(summary), encoding="utf-8")

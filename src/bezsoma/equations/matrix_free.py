@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -72,18 +73,19 @@ class MatrixFree:
     def __matmul__(self, x: Floats) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N.
 
-        Sides are worked on eight or four at a time (AVX-512; four, or two, with less): eight cost
-        3.6 to 8 times one at degrees 1 to 4, four 2.4 to 4.5 times. What is left over goes one by
-        one. Eight at once take a tenth less where x begins at a line of the cache (`on_lines`).
+        Sides are worked on eight or four at a time (two where registers hold two), what is left
+        over one by one: eight cost 3.6 to 8 times one at degrees 1 to 4, four 2.4 to 4.5 times.
+        Six and seven cost more than eight: zeros that make eight of them are worth it. Eight at
+        once take a tenth less where x begins at a line of the cache (`on_lines`).
         """
-        sides = np.ascontiguousarray(x, dtype=np.float64).reshape(len(x), 3, -1)
+        sides = _rows(x, np.float64)
         y = on_lines(sides.shape)
         self.kernel.apply(sides, y)
         return y.reshape(x.shape)
 
     def single(self, x: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
         """K x in float32 throughout, (c, 3) or (c, 3, s)."""
-        sides = np.ascontiguousarray(x, dtype=np.float32).reshape(len(x), 3, -1)
+        sides = _rows(x, np.float32)
         y = on_lines(sides.shape, np.float32)
         self._single.apply_single(sides, y)
         return y.reshape(x.shape)
@@ -124,6 +126,13 @@ class MatrixFree:
         are large and strains small, and in x . K x large terms would cancel.
         """
         return self.kernel.work(np.ascontiguousarray(x)) / 2
+
+
+def _rows(x: npt.NDArray[Any], kind: npt.DTypeLike) -> npt.NDArray[Any]:
+    """x (c, 3) or (c, 3, s) as (c, 3, s)."""
+    if x.ndim < 2 or x.shape[1] != 3:
+        raise ValueError(f"x is {x.shape}; it has to be (c, 3), or (c, 3, s) for several sides")
+    return np.ascontiguousarray(x, dtype=kind).reshape(len(x), 3, -1)
 
 
 def walk(

@@ -132,7 +132,7 @@ def _fewer(rows: Floats) -> Floats:
     """
     columns = rows.shape[1]
     while len(rows) > columns:
-        piece = min(len(rows), 256)
+        piece = min(len(rows), max(256, 2 * columns))
         whole = np.zeros((-(-len(rows) // piece), piece, columns))
         whole.reshape(-1, columns)[: len(rows)] = rows
         rows = np.asarray(np.linalg.qr(whole, mode="r")).reshape(-1, columns)

@@ -98,7 +98,7 @@ def volume_change(displacement: Field) -> float:
     means = displacement.controls[net.of_facets(mesh.boundary)].mean(axis=1)
     means -= means.mean(axis=0)
     flux = np.einsum("fk,fk->f", means, mesh.normals(mesh.boundary))
-    return float(mesh.areas(mesh.boundary) @ flux)
+    return float(np.einsum("f,f->", mesh.areas(mesh.boundary), flux))
 
 
 def principal(tensors: Floats) -> Floats:

@@ -68,4 +68,11 @@ def interpolation_inside(degree: int, dim: int) -> Floats:
 def rows_applied(rows: Floats, values: Floats, closures: Ints | Int32s) -> Floats:
     """The rows (r, m) applied to the values (c, ...) on each closure (q, m): (r, q, ...)."""
     local = np.take(values, closures.T, axis=0)  # quicker than values[closures.T]
-    return (rows @ local.reshape(len(local), -1)).reshape(len(rows), *local.shape[1:])
+    columns = local.reshape(len(local), -1)
+    found = np.empty((len(rows), columns.shape[1]))
+    # In products too small for BLAS to wake threads of its own: see `rigid._fewer`.
+    piece = max(1, 200_000 // max(1, rows.size))
+    for begin in range(0, columns.shape[1], piece):
+        part = slice(begin, begin + piece)
+        np.matmul(rows, columns[:, part], out=found[:, part])
+    return found.reshape(len(rows), *local.shape[1:])
