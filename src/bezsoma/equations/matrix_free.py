@@ -75,8 +75,7 @@ class MatrixFree:
 
         Sides are worked on eight or four at a time (two where registers hold two), what is left
         over one by one: eight cost 3.6 to 8 times one at degrees 1 to 4, four 2.4 to 4.5 times.
-        Six and seven cost more than eight: zeros that make eight of them are worth it. Eight at
-        once take a tenth less where x begins at a line of the cache (`on_lines`).
+        Six and seven cost more than eight: zeros that make eight of them are worth it.
         """
         sides = _rows(x, np.float64)
         y = on_lines(sides.shape)
