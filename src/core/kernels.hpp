@@ -24,6 +24,7 @@ constexpr std::int64_t row_of_area = 8, forces_in_row = 4;
 /// u, f (own controls, 3), u_end, f_end the ends of the same of foreign controls. Past both parts
 /// of u 16 numbers may be read but are not used. Own forces are cleared when a stretch first meets
 /// them, met (batches,) being one past the own controls met so far; foreign ones are added to.
+///
 /// area (own controls, row_of_area), foreign ones before: what kernels with such rows have in place
 /// of u_end and f_end, and where they leave forces. Own controls come into it from u when a stretch
 /// first meets them, and f is only called for, where own forces will go.
