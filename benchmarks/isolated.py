@@ -57,8 +57,14 @@ def forget_peak() -> None:
 
 
 def peak() -> int:
-    """The most bytes that this process held since `forget_peak`."""
+    """The most bytes that this process held since `forget_peak`, and each child that it has."""
     if sys.platform == "linux":
-        lines = Path("/proc/self/status").read_text().splitlines()
-        return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS
+        children = psutil.Process().children(recursive=True)
+        return sum(_most(str(each)) for each in ("self", *(child.pid for child in children)))
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS, without children
+
+
+def _most(process: str) -> int:
+    """The most bytes that a process held."""
+    lines = Path(f"/proc/{process}/status").read_text().splitlines()
+    return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))

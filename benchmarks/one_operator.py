@@ -33,7 +33,7 @@ def measure(request: dict[str, Any]) -> dict[str, Any]:
             operator.walk(), threads, request["instructions"], single=width == 4
         )
         apply = kernel.apply if width == 8 else kernel.apply_single
-        limit = peaks.flops(width, threads)
+        limit = peaks.flops(width, threads, repeats)
         for sides in request["sides"]:
             x = on_lines((net.count, 3, sides), KINDS[width])
             x[...] = np.random.default_rng(1).random(x.shape)

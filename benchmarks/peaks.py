@@ -47,7 +47,7 @@ def triad(size: int, threads: int, repeats: int = 5) -> float:
         return 32 * count * passes / least(all_parts, repeats, threads)
 
 
-def flops(width: int, threads: int, repeats: int = 20) -> float:
+def flops(width: int, threads: int, repeats: int) -> float:
     """Flops a second of a dense product of numpy's BLAS, whose threads the environment sets."""
     n = 1536
     kind: Any = np.float64 if width == 8 else np.float32

@@ -254,7 +254,7 @@ def test_the_command_itself_runs_and_does_not_wait_for_what_it_does_not_need() -
 
 
 def test_the_command_as_a_program_refuses_with_status_2(tmp_path: Path) -> None:
-    words = [sys.executable, "-m", "bezsoma.cli", "run", str(tmp_path / "case.toml")]
+    words = [sys.executable, "-m", "bezsoma", "run", str(tmp_path / "case.toml")]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith("bezsoma: no case")

@@ -102,9 +102,13 @@ ARCHIVES: dict[str, tuple[Callable[[Path], Path], list[str]]] = {
     ),
     "text for points": (lambda p: archive(p, points=np.array("hello")), ["points", "()", "(v, 3)"]),
     "a later version": (lambda p: archive(p, bezsoma_mesh=2), ["version 2", "newer BezSoma"]),
-    "our form, cut": (lambda p: archive(p, bezsoma_mesh=1), ["no array", "names"]),
+    "our form, cut": (lambda p: archive(p, bezsoma_mesh=1), ["no array 'region'", "only"]),
+    "our form, without its sizes": (
+        lambda p: archive(p, bezsoma_mesh=1, region=[0], regions=["a"], surface_names=["b"]),
+        ["no array 'surface_sizes'"],
+    ),
     "one array, not an archive": (lambda p: single(p), ["no sound NumPy archive"]),
-    "a zip of other things": (lambda p: other_zip(p), ["points", "(v, 3)"]),
+    "a zip of other things": (lambda p: other_zip(p), ["no sound NumPy archive"]),
     "an archive that swells": (lambda p: bomb(p), ["GiB", "hardly a mesh"]),
 }
 

@@ -112,7 +112,7 @@ def conditioned() -> Iterator[Value]:
         )
 
 
-KIRBY = "R. C. Kirby and T. T. Kieu, Numer. Math. 121 (2012), doi:10.1007/s00211-011-0431-y"
+KIRBY = "R. C. Kirby and K. T. Thinh, Numer. Math. 121 (2012), doi:10.1007/s00211-011-0431-y"
 for dim in (1, 2, 3):
     FAMILY.add(
         f"Mass matrix in {dim} D",

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from bezsoma import _core
 from bezsoma.arrays import Floats, Int32s, Ints, on_lines
 from bezsoma.bernstein import gradient_products
+from bezsoma.errors import counted
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.topology import determinants, slices
 
@@ -62,6 +63,11 @@ class MatrixFree:
     @cached_property
     def _single(self) -> _core.MatrixFree:
         return _core.MatrixFree(self.walk(), self.threads, self.instructions, single=True)
+
+    @property
+    def runs_on(self) -> str:
+        """The kernels and how many threads, to be read: "avx512, 2 threads"."""
+        return f"{self.kernel.instructions}, {counted(self.kernel.threads, 'thread')}"
 
     def walk(self, unit: float = 1.0, first: Int32s | None = None) -> _core.Walk:
         """The tets in the order in which they numbered the controls, as the core takes them.

@@ -71,10 +71,11 @@ def _cells(foreign: Any, cell: str, kind: str, tags: str | None, width: int) -> 
     rows = np.concatenate([none, *(np.asarray(foreign.cells[i].data) for i in blocks)])
     values = [np.asarray(foreign.cell_data[tags][i]) for i in blocks] if tags else []
     marks = np.concatenate([np.zeros(0, np.int64), *values]).astype(np.int64) if values else None
+    groups = foreign.field_data if tags == "gmsh:physical" else {}  # of VTK's files it is anything
     names = {
         int(number): str(name)
-        for name, (number, dimension) in foreign.field_data.items()
-        if tags == "gmsh:physical" and dimension == width - 1
+        for name, (number, dimension) in groups.items()
+        if dimension == width - 1
     }
     return Cells(rows, marks, names, _sets(foreign, blocks, kind, len(rows)))
 

@@ -5,8 +5,8 @@ Plain: `points` (v, 3), `tets` (t, 4), and optionally `facets` (f, 3) with `face
 `facet_tet` (f,) (the tet that has each facet), and `tet_tags` (t,). Other arrays are ignored.
 
 Ours: `bezsoma_mesh` (the version, 1), `points`, `tets`, `region`, `regions`, and for each kind of
-place, surface, edge and vertex, `KIND_names` (k,), `KIND_sizes` (k,) and `KIND_rows`, the rows of
-all places one after the other.
+place that there is, surface, edge and vertex, `KIND_names` (k,), `KIND_sizes` (k,) and `KIND_rows`,
+the rows of all places one after the other.
 """
 
 from __future__ import annotations
@@ -71,11 +71,12 @@ def write_npz(file: BinaryIO, mesh: TetMesh) -> None:
     }
     kinds = {"surface": mesh.surfaces, "edge": mesh.edges, "vertex": mesh.vertices}
     for kind, places in kinds.items():
+        if not places:
+            continue
         rows = [rows.reshape(-1, WIDTHS[kind]) for rows in places.values()]
-        none = np.zeros((0, WIDTHS[kind]), np.int64)
-        arrays[f"{kind}_names"] = np.array(list(places), dtype=np.str_)
-        arrays[f"{kind}_sizes"] = np.array([len(part) for part in rows], dtype=np.int64)
-        arrays[f"{kind}_rows"] = np.concatenate([none, *rows])
+        arrays[f"{kind}_names"] = np.array(list(places))
+        arrays[f"{kind}_sizes"] = np.array([len(part) for part in rows])
+        arrays[f"{kind}_rows"] = np.concatenate(rows)
     np.savez(file, **arrays)  # type: ignore[arg-type]
 
 
@@ -83,14 +84,18 @@ def _arrays(path: Path) -> dict[str, Numbers]:
     """Every array of the archive by name, or an error that says what is wrong with it."""
     try:
         with zipfile.ZipFile(path) as archive:
-            size = sum(part.file_size for part in archive.infolist())
-        if size > LARGEST:
-            raise MeshError(
-                f"the archive would unpack to {size / 2**30:.3g} GiB; {LARGEST / 2**30:.3g} GiB "
-                "are allowed: this is hardly a mesh"
-            )
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: np.asarray(archive[name]) for name in archive.files}
+            parts = archive.infolist()
+            size = sum(part.file_size for part in parts)
+            if size > LARGEST:
+                raise MeshError(
+                    f"the archive would unpack to {size / 2**30:.3g} GiB; {LARGEST / 2**30:.3g} "
+                    "GiB are allowed: this is hardly a mesh"
+                )
+            return {
+                part.filename.removesuffix(".npy"): _unpacked(archive, part)
+                for part in parts
+                if part.filename.endswith(".npy")
+            }
     except InputError:
         raise
     except Exception as error:  # zip, zlib and NumPy each have their own ways to fail
@@ -98,6 +103,11 @@ def _arrays(path: Path) -> dict[str, Numbers]:
             f"it is no sound NumPy archive of plain arrays ({error}); it may be damaged or cut "
             "short: write it again with numpy.savez or bezsoma.write_mesh"
         ) from error
+
+
+def _unpacked(archive: zipfile.ZipFile, part: zipfile.ZipInfo) -> Numbers:
+    with archive.open(part) as file:
+        return np.asarray(np.lib.format.read_array(file, allow_pickle=False))
 
 
 def _array(arrays: Mapping[str, Numbers], name: str) -> Numbers:
@@ -164,6 +174,8 @@ def _names(arrays: Mapping[str, Numbers], name: str) -> tuple[str, ...]:
 
 
 def _places(arrays: Mapping[str, Numbers], kind: str) -> dict[str, Numbers]:
+    if not any(f"{kind}_{what}" in arrays for what in ("names", "sizes", "rows")):
+        return {}
     names, sizes = _names(arrays, f"{kind}_names"), _array(arrays, f"{kind}_sizes")
     rows = _array(arrays, f"{kind}_rows")
     fits = sizes.shape == (len(names),) and sizes.dtype.kind in "iu" and (sizes >= 0).all()

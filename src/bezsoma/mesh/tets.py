@@ -64,6 +64,8 @@ class TetMesh:
     """Mesh edges (e, 2) of each named edge place, rows ascending."""
     vertices: Mapping[str, Ints]
     """Vertex numbers (k,) of each named vertex place, ascending."""
+    left_handed: Bools
+    """Whether det[p1 - p0, p2 - p0, p3 - p0] < 0, (t,), decided without rounding errors."""
     dropped: int
     """How many of the points given belonged to no tet."""
     face_count: int
@@ -93,6 +95,7 @@ class TetMesh:
             tets=frozen(rows if used.all() else renumbered[rows]),
             region=frozen(numbers),
             regions=names,
+            left_handed=frozen(signs < 0),
             dropped=int((~used).sum()),
         )
         self._hold(face_count=len(self.all_faces))
@@ -206,14 +209,6 @@ class TetMesh:
         [[0, 1, 3, 2]]
         """
         return np.where(self.left_handed[:, None], self.tets[:, [0, 1, 3, 2]], self.tets)
-
-    @property
-    def left_handed(self) -> Bools:
-        """Whether det[p1 - p0, p2 - p0, p3 - p0] < 0, (t,)."""
-        found = np.empty(len(self.tets), bool)
-        for part in slices(len(found)):
-            found[part] = determinants(self.points[self.tets[part]]) < 0
-        return found
 
     @property
     def box(self) -> Floats:

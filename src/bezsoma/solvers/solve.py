@@ -183,8 +183,7 @@ def _equations(body: Body, solver: str, threads: int, watch: Watch) -> tuple[str
         stiffness: BlockMatrix | MatrixFree
         if chosen == "multigrid":
             stiffness = MatrixFree(net, lame, threads)
-            kernel = stiffness.kernel
-            watch.tell("stiffness", None, f"{kernel.instructions}, {kernel.threads} threads")
+            watch.tell("stiffness", None, stiffness.runs_on)
         else:
             stiffness = assembled(net, *moduli(body), threads)
     return (
@@ -251,7 +250,7 @@ def _without_a_matrix(
 ) -> _Found:
     assert isinstance(equations.stiffness, MatrixFree)
     x, history = multigrid(equations, equations.stiffness, b, rtol, watch.iterations(rtol), start)
-    how = f"{equations.stiffness.kernel.instructions}, {equations.stiffness.kernel.threads} threads"
+    how = equations.stiffness.runs_on
     return _Found(x, f"conjugate gradients with entity blocks and multigrid ({how})", history)
 
 

@@ -6,9 +6,7 @@ Lengths are mm, the frame is LPS; the file says so itself.
 
 from __future__ import annotations
 
-import base64
 import json
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -25,11 +23,6 @@ _TYPES = {
     "f8": "Float64", "i4": "Int32", "i8": "Int64",
     "u1": "UInt8", "u2": "UInt16", "u4": "UInt32",
 }  # fmt: skip
-_BLOCK = 1 << 20
-_SAMPLE = 1 << 15
-_SHRINKS = 0.8
-"""Blocks of whose beginning more than this part is left are stored as they are: the digits of most
-coordinates and displacements hardly shrink, and took longer than all else."""
 _COMPONENTS = {1: ("",), 3: ("X", "Y", "Z"), 9: tuple(a + b for a in "XYZ" for b in "XYZ")}
 
 
@@ -86,82 +79,70 @@ def write_surface_vtu(
 
 
 def _document(grid: Grid) -> bytes:
-    """The XML file: version 1.0, little-endian, arrays as base64 of zlib blocks."""
+    """The XML file: version 1.0, little-endian, its arrays appended as they are in memory.
+
+    Neither compressed nor as text: the digits of coordinates and displacements hardly shrink, and
+    either took longer than all else.
+    """
     text = json.dumps(grid.metadata, ensure_ascii=True, sort_keys=True)
+    arrays = _Appended()
     lines = [
         '<?xml version="1.0"?>',
         f"<!-- {text.replace('--', '- -')} -->",
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian"'
-        ' header_type="UInt64" compressor="vtkZLibDataCompressor">',
+        ' header_type="UInt64">',
         "<UnstructuredGrid>",
         "<FieldData>",
-        _array("metadata", np.frombuffer(text.encode(), np.uint8), tuples=True),
+        arrays.element("metadata", np.frombuffer(text.encode(), np.uint8), tuples=True),
         "</FieldData>",
         f'<Piece NumberOfPoints="{len(grid.points)}" NumberOfCells="{len(grid.cells)}">',
         "<Points>",
-        _array("Points", grid.points),
+        arrays.element("Points", grid.points),
         "</Points>",
         "<Cells>",
-        _array("connectivity", grid.cells.ravel()),
-        _array("offsets", grid.offsets[1:]),
-        _array("types", grid.types),
+        arrays.element("connectivity", grid.cells.ravel()),
+        arrays.element("offsets", grid.offsets[1:]),
+        arrays.element("types", grid.types),
         "</Cells>",
         "<PointData>",
-        *(_array(name, array) for name, array in grid.point_data.items()),
+        *(arrays.element(name, array) for name, array in grid.point_data.items()),
         "</PointData>",
         "<CellData>",
-        *(_array(name, array) for name, array in grid.cell_data.items()),
+        *(arrays.element(name, array) for name, array in grid.cell_data.items()),
         "</CellData>",
         "</Piece>",
         "</UnstructuredGrid>",
-        "</VTKFile>",
-        "",
+        '<AppendedData encoding="raw">',
+        "_",
     ]
-    return "\n".join(lines).encode()
+    end = b"\n</AppendedData>\n</VTKFile>\n"
+    return b"".join(["\n".join(lines).encode(), *arrays.blocks, end])
 
 
-def _array(name: str, array: Numbers, tuples: bool = False) -> str:
-    """One DataArray element; `tuples` states their number, which field data needs."""
-    kind = "f8" if array.dtype.kind == "f" else array.dtype.str[1:]
-    content = np.ascontiguousarray(array, dtype=f"<{kind}")
-    components = content.shape[1] if content.ndim == 2 else 1
-    labels = "".join(
-        f' ComponentName{i}="{label}"'
-        for i, label in enumerate(_COMPONENTS.get(components, ()))
-        if label
-    )
-    parts = f' NumberOfComponents="{components}"' if components > 1 else ""
-    number = f' NumberOfTuples="{len(content)}"' if tuples else ""
-    return (
-        f'<DataArray type="{_TYPES[kind]}" Name={quoteattr(name)}{parts}{labels}{number}'
-        f' format="binary">'
-        f"{_encoded(content.reshape(-1).view(np.uint8).data)}</DataArray>"
-    )
+class _Appended:
+    """The arrays of a file one after the other, each behind its number of bytes (UInt64)."""
 
+    def __init__(self) -> None:
+        self.blocks: list[bytes | memoryview] = []
+        self.size = 0
 
-def _encoded(raw: bytes | memoryview) -> str:
-    """VTK's inline form: base64 of [blocks, block size, last size, sizes], then of the blocks.
-
-    >>> text = _encoded(b"abc")
-    >>> np.frombuffer(base64.b64decode(text[:44]), "<u8").tolist(), text[44:48]
-    ([1, 1048576, 3, 14], 'eAEB')
-    >>> zlib.decompress(base64.b64decode(text[44:]))
-    b'abc'
-    """
-    blocks = [raw[i : i + _BLOCK] for i in range(0, len(raw), _BLOCK)]
-    packed = [_packed(block) for block in blocks]
-    last = len(raw) % _BLOCK
-    header = np.array([len(blocks), _BLOCK, last, *map(len, packed)], "<u8")
-    return (base64.b64encode(header.tobytes()) + base64.b64encode(b"".join(packed))).decode()
-
-
-def _packed(block: bytes | memoryview) -> bytes:
-    """A block as zlib has it; stored where it would hardly shrink.
-
-    >>> digits = np.random.default_rng(1).random(10_000).tobytes()
-    >>> len(_packed(digits)) > 80_000 > 400 > len(_packed(bytes(80_000)))
-    True
-    """
-    sample = block[:_SAMPLE]
-    shrinks = len(zlib.compress(sample, 1)) <= _SHRINKS * len(sample)
-    return zlib.compress(block, 1 if shrinks else 0)
+    def element(self, name: str, array: Numbers, tuples: bool = False) -> str:
+        """The DataArray element of one more array; `tuples` states their number, for field data."""
+        kind = "f8" if array.dtype.kind == "f" else array.dtype.str[1:]
+        content = np.ascontiguousarray(array, dtype=f"<{kind}")
+        components = content.shape[1] if content.ndim == 2 else 1
+        labels = "".join(
+            f' ComponentName{i}="{label}"'
+            for i, label in enumerate(_COMPONENTS.get(components, ()))
+            if label
+        )
+        parts = f' NumberOfComponents="{components}"' if components > 1 else ""
+        number = f' NumberOfTuples="{len(content)}"' if tuples else ""
+        offset = self.size
+        raw = content.reshape(-1).view(np.uint8).data
+        self.blocks += [len(raw).to_bytes(8, "little"), raw]
+        self.size += 8 + len(raw)
+        return (
+            f'<DataArray type="{_TYPES[kind]}" Name={quoteattr(name)}{parts}{labels}{number}'
+            f' format="appended" offset="{offset}"/>'
+        )
