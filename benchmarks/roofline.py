@@ -36,7 +36,7 @@ def main() -> None:
                 "instructions": instructions,
                 "threads": options.threads,
                 "unknowns": options.dofs,
-                "sides": [1, 8],
+                "sides": options.sides,
                 "repeats": options.repeats,
             }
             reply = isolated.ran("one_operator.py", request, options.threads)
@@ -127,6 +127,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--dofs", type=int, default=1_000_000)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--repeats", type=int, default=7)
+    parser.add_argument("--sides", type=int, nargs="+", default=[1, 8], help="right-hand sides")
     sets = _core.instruction_sets()
     parser.add_argument("--instructions", nargs="+", default=sets, choices=sets)
     parser.add_argument("--name", default="operator", help="of the files in benchmarks/results")
