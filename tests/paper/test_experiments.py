@@ -255,6 +255,9 @@ def test_the_command_leaves_a_page(tmp_path: Path, capsys: pytest.CaptureFixture
     assert cli.main(["experiment", "figure_5", "--output", str(folder)]) == 2
     assert "--overwrite" in capsys.readouterr().err
     assert cli.main(["experiment", "figure_5", "--output", str(folder), "--overwrite"]) == 0
+    quick = ["experiment", "figure_5", "--output", str(folder), "--overwrite", "--quick"]
+    assert cli.main(quick) == 2
+    assert "the page of a whole run" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

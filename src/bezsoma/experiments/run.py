@@ -64,11 +64,17 @@ def run_experiment(
 ) -> list[Path]:
     """Run one; the files that it left: README.md (the page), pictures, numbers as CSV.
 
-    A quick run leaves no page and no pictures, which would speak of rows that it has not.
+    A quick run leaves no page and no pictures, which would speak of rows that it has not, and
+    does not replace a whole one.
     """
     chosen, target = experiment(name), Path(folder)
     with made(target):
         refuse_occupied(target, overwrite)
+        if quick and (target / "README.md").exists():
+            raise InputError(
+                f"{str(target)!r} holds the page of a whole run, which would then speak of other "
+                "numbers; name another folder with -o"
+            )
     tables = chosen.measured(quick)
     files = {f"{file}.csv": table.as_csv().encode() for file, table in tables.items()}
     if not quick:
