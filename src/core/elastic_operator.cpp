@@ -8,7 +8,6 @@
 #include "foreign.hpp"
 #include "formed_shapes.hpp"
 #include "large.hpp"
-#include "pieces.hpp"
 
 namespace bezsoma {
 
@@ -28,6 +27,9 @@ std::int64_t tet_at(std::int64_t place, std::int64_t lanes, std::int64_t batches
     const std::int64_t stretch = std::min(apart, batches - begin);
     return begin * lanes + place % lanes * stretch + batch - begin;
 }
+
+/// Where a chunk's own controls begin in one of so many sides.
+std::int64_t own_begin(const Chunk &chunk, std::int64_t sides) { return 3 * sides * chunk.control; }
 
 /// Where a chunk's own points begin among (foreign, own) of all chunks.
 std::int64_t first_point(const Chunk &chunk) {
@@ -143,39 +145,9 @@ void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk
     }
 }
 
-template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
-    if (sides == 1)
-        return apply_in_chunks(u, f, 1);
-    const int beside = sides - sides % sides_beside(lanes_);
-    if (beside > 0)
-        apply_in_chunks(u, f, sides);
-    if (beside < sides)
-        apply_one_by_one(u, f, sides, beside);
-}
-
-/// The sides from `first` on, too few to be worked on beside each other, in vectors of their own.
-template <class T>
-void ElasticOperator<T>::apply_one_by_one(const T *u, T *f, int sides, int first) {
-    constexpr std::size_t line = cache_line / sizeof(T);
-    const std::size_t numbers = size(3 * chunks_.controls), many = size(sides - first);
-    const std::size_t length = (numbers + line - 1) / line * line;
-    one_.resize(2 * many * length + line);
-    T *const u_one = on_line(one_.data()), *const f_one = u_one + many * length;
-    each_number(team_, numbers, [&](std::size_t i) {
-        for (std::size_t k = 0; k < many; ++k)
-            u_one[k * length + i] = u[i * size(sides) + size(first) + k];
-    });
-    for (std::size_t k = 0; k < many; ++k)
-        apply_in_chunks(u_one + k * length, f_one + k * length, 1);
-    each_number(team_, numbers, [&](std::size_t i) {
-        for (std::size_t k = 0; k < many; ++k)
-            f[i * size(sides) + size(first) + k] = f_one[k * length + i];
-    });
-}
-
 /// One thread comes to the chunks in their order, which is that of the sums: it adds what a chunk
 /// has found for others at once, while it is at hand. Several wait until all chunks are done.
-template <class T> void ElasticOperator<T>::apply_in_chunks(const T *u, T *f, int sides) {
+template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
     const bool alone = team_.size() == 1;
     const std::int64_t row = 3 * std::int64_t{sides};
     foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)) +
@@ -212,11 +184,13 @@ template <class T> Batches<T> ElasticOperator<T>::batches(std::size_t c) const {
 
 namespace {
 
-/// The forces of n controls of an area, one after another.
-template <class T> void forces_of_area(const T *area, std::int64_t n, T *f) {
-    for (std::int64_t i = 0; i < n; ++i)
-        for (std::int64_t k = 0; k < 3; ++k)
-            f[3 * i + k] = area[row_of_area * i + forces_in_row + k];
+/// The forces of n controls of an area, in one side of `sides`.
+template <class T> void forces_of_area(const T *area, std::int64_t n, T *f, std::int64_t sides) {
+    with_row(3, sides, [&](auto row, auto step) {
+        for (std::int64_t i = 0; i < n; ++i)
+            for (std::int64_t k = 0; k < row; ++k)
+                f[(row * i + k) * step] = area[row_of_area * i + forces_in_row + k];
+    });
 }
 
 template <class T> void make_least(std::vector<T> &v, std::size_t n) {
@@ -232,12 +206,24 @@ template <class T> bool ElasticOperator<T>::may_read_past(const Chunk &chunk) co
 }
 
 /// Forces of a chunk's tets: on own controls in f, on foreign ones added to f by a thread that is
-/// alone, or else in f_foreign.
+/// alone, or else in f_foreign. Sides too few to be worked on beside each other go one by one.
 template <class T>
 void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
                                          bool alone, std::vector<T> &scratch) {
-    if (sides == 1 && works_in_area())
-        return forces_in_area(c, u, f, f_foreign, alone, scratch);
+    const int beside = sides == 1 ? 0 : sides - sides % sides_beside(lanes_);
+    if (beside > 0)
+        forces_beside(c, u, f, f_foreign, sides, alone, scratch);
+    for (int side = beside; side < sides; ++side)
+        if (works_in_area())
+            forces_in_area(c, u + side, f + side, f_foreign + side, sides, alone, scratch);
+        else
+            forces_of_side(c, u + side, f + side, f_foreign + side, sides, alone, scratch);
+}
+
+/// Of the sides that are worked on beside each other.
+template <class T>
+void ElasticOperator<T>::forces_beside(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
+                                       bool alone, std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t own = chunk.owned, foreign = std::ssize(chunk.foreign), row = 3 * sides;
     make_least(scratch, size(row * chunks_.largest) + padding + cache_line / sizeof(T));
@@ -252,47 +238,89 @@ void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_f
     b.f = f + row * chunk.control;
     b.f_end = f_foreign + row * foreign;
     std::fill_n(f_foreign, row * foreign, T{});
-    if (sides == 1)
-        kernel_.apply(b);
-    else
-        kernel_.apply_many(b, sides);
+    kernel_.apply_many(b, sides);
     if (alone)
         add_rows(chunk.foreign, f_foreign, row, f, row);
 }
 
-/// The batches of a chunk with an area, into which its foreign controls have come.
+/// Of one side, where u, f and f_foreign begin. If there are others beside it its numbers are
+/// brought together, and its forces come into vectors of the chunk first.
 template <class T>
-Batches<T> ElasticOperator<T>::with_area(std::size_t c, const T *u, std::vector<T> &scratch) const {
+void ElasticOperator<T>::forces_of_side(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
+                                        bool alone, std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
-    make_least(scratch, size(row_of_area * chunks_.largest) + cache_line / sizeof(T));
+    const std::int64_t own = 3 * std::int64_t{chunk.owned}, foreign = 3 * std::ssize(chunk.foreign);
+    const std::int64_t row = sides > 1 ? 6 : 3;
+    make_least(scratch, size(row * chunks_.largest) + padding + cache_line / sizeof(T));
     Batches<T> b = batches(c);
-    b.u = u + 3 * std::int64_t{chunk.control};
-    b.area = on_line(scratch.data());
-    for (const std::int32_t control : chunk.foreign) {
-        for (std::int64_t k = 0; k < 3; ++k) {
-            b.area[k] = u[3 * std::int64_t{control} + k];
-            b.area[forces_in_row + k] = T{};
-        }
-        b.area += row_of_area;
+    T *next = on_line(scratch.data());
+    b.u = u + own_begin(chunk, sides);
+    if (sides > 1 || !may_read_past(chunk)) {
+        const T *const from = b.u;
+        b.u = next;
+        for (std::int64_t i = 0; i < own; ++i)
+            *next++ = from[i * sides];
     }
+    b.u_end = copy_rows(chunk.foreign, u, 3, next, sides);
+    T *const apart = next + foreign + padding;
+    b.f = sides > 1 ? apart : f + own_begin(chunk, sides);
+    T *const found = sides > 1 ? apart + own : f_foreign;
+    b.f_end = found + foreign;
+    std::fill_n(found, foreign, T{});
+    kernel_.apply(b);
+    if (sides > 1)
+        for (std::int64_t i = 0; i < own; ++i)
+            f[own_begin(chunk, sides) + i * sides] = b.f[i];
+    if (alone)
+        add_rows(chunk.foreign, found, 3, f, 3, sides);
+    else if (sides > 1)
+        for (std::int64_t i = 0; i < foreign; ++i)
+            f_foreign[i * sides] = found[i];
+}
+
+/// The batches of a chunk with an area, into which its foreign controls have come, of one side.
+template <class T>
+Batches<T> ElasticOperator<T>::with_area(std::size_t c, const T *u, int sides,
+                                         std::vector<T> &scratch) const {
+    const Chunk &chunk = chunks_.parts[c];
+    const std::int64_t row = row_of_area + (sides > 1 ? 3 : 0);
+    make_least(scratch, size(row * chunks_.largest) + cache_line / sizeof(T));
+    Batches<T> b = batches(c);
+    b.u = u + own_begin(chunk, sides);
+    b.area = on_line(scratch.data());
+    if (sides > 1) {
+        T *const own = b.area + row_of_area * std::int64_t{chunks_.largest};
+        for (std::int64_t i = 0; i < 3 * std::int64_t{chunk.owned}; ++i)
+            own[i] = b.u[i * sides];
+        b.u = own;
+    }
+    with_row(3, sides, [&](auto wide, auto step) {
+        for (const std::int32_t control : chunk.foreign) {
+            for (std::int64_t k = 0; k < wide; ++k) {
+                b.area[k] = u[(wide * control + k) * step];
+                b.area[forces_in_row + k] = T{};
+            }
+            b.area += row_of_area;
+        }
+    });
     return b;
 }
 
-/// The same of one side by a kernel that works in an area.
+/// The same as `forces_of_side` by a kernel that works in an area.
 template <class T>
-void ElasticOperator<T>::forces_in_area(std::size_t c, const T *u, T *f, T *f_foreign, bool alone,
-                                        std::vector<T> &scratch) {
+void ElasticOperator<T>::forces_in_area(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
+                                        bool alone, std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t foreign = std::ssize(chunk.foreign);
-    Batches<T> b = with_area(c, u, scratch);
+    Batches<T> b = with_area(c, u, sides, scratch);
     const T *const found = b.area - row_of_area * foreign;
-    b.f = f + 3 * std::int64_t{chunk.control};
+    b.f = f + own_begin(chunk, sides);
     kernel_.apply(b);
-    forces_of_area(b.area, chunk.owned, b.f);
+    forces_of_area(b.area, chunk.owned, b.f, sides);
     if (alone)
-        add_rows(chunk.foreign, found + forces_in_row, row_of_area, f, 3);
+        add_rows(chunk.foreign, found + forces_in_row, row_of_area, f, 3, sides);
     else
-        forces_of_area(found, foreign, f_foreign);
+        forces_of_area(found, foreign, f_foreign, sides);
 }
 
 template <class T> double ElasticOperator<T>::work(const T *u) {
@@ -301,7 +329,7 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
         const Chunk &chunk = chunks_.parts[c];
         auto &scratch = scratch_[thread];
         if (works_in_area()) {
-            sums[c] = kernel_.work(with_area(c, u, scratch));
+            sums[c] = kernel_.work(with_area(c, u, 1, scratch));
             return;
         }
         make_least(scratch, size(3 * std::int64_t{chunks_.largest}) + padding);

@@ -67,13 +67,15 @@ private:
     Batches<T> batches(std::size_t chunk) const;
     bool may_read_past(const Chunk &chunk) const;
     bool works_in_area() const { return kernel_.row == row_of_area; }
-    Batches<T> with_area(std::size_t chunk, const T *u, std::vector<T> &scratch) const;
-    void apply_in_chunks(const T *u, T *f, int sides);
-    void apply_one_by_one(const T *u, T *f, int sides, int first);
-    void forces_in_area(std::size_t chunk, const T *u, T *f, T *f_foreign, bool alone,
-                        std::vector<T> &scratch);
+    Batches<T> with_area(std::size_t chunk, const T *u, int sides, std::vector<T> &scratch) const;
     void forces_of_chunk(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides, bool alone,
                          std::vector<T> &scratch);
+    void forces_beside(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides, bool alone,
+                       std::vector<T> &scratch);
+    void forces_of_side(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides, bool alone,
+                        std::vector<T> &scratch);
+    void forces_in_area(std::size_t chunk, const T *u, T *f, T *f_foreign, int sides, bool alone,
+                        std::vector<T> &scratch);
 
     Kernel<T> kernel_;
     int lanes_;
@@ -88,7 +90,6 @@ private:
     std::vector<T> lame_;                 // (regions + 1, 2), the last row zero
     std::vector<T> foreign_;              // (foreign controls, 3, sides) of all chunks, or of one,
                                           // from a line of the cache on
-    std::vector<T> one_;                  // u and f of sides that go by themselves
     std::vector<std::vector<T>> scratch_; // a thread each
 };
 

@@ -106,13 +106,23 @@ OPERATOR = (
         ),
         (
             "a last own control whose forces stay in the area",
-            "forces_of_area(b.area, chunk.owned, b.f);",
-            "forces_of_area(b.area, chunk.owned - 1, b.f);",
+            "forces_of_area(b.area, chunk.owned, b.f, sides);",
+            "forces_of_area(b.area, chunk.owned - 1, b.f, sides);",
         ),
         (
             "sides left over that all take the numbers of the first of them",
-            "u_one[k * length + i] = u[i * size(sides) + size(first) + k];",
-            "u_one[k * length + i] = u[i * size(sides) + size(first)];",
+            "forces_of_side(c, u + side, f + side, f_foreign + side, sides, alone, scratch);",
+            "forces_of_side(c, u + beside, f + side, f_foreign + side, sides, alone, scratch);",
+        ),
+        (
+            "sides left over in an area that all take the own numbers of the first side",
+            "own[i] = b.u[i * sides];",
+            "own[i] = b.u[i * sides / 3 * 3];",
+        ),
+        (
+            "forces that one side found for other chunks kept for the next",
+            "std::fill_n(found, foreign, T{});",
+            ";",
         ),
         (
             "foreign controls whose forces an area keeps from the chunk before",
@@ -131,8 +141,8 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "one thread that adds the first number that a chunk found for others everywhere",
-            "to[k] += next[k];",
-            "to[k] += next[0];",
+            "to[k * apart] += next[k];",
+            "to[k * apart] += next[0];",
         ),
         (
             "what other chunks add to a chunk's controls is dropped",
@@ -141,8 +151,8 @@ OPERATOR = (
         ),
         (
             "shared controls read with their first component for all",
-            "*to++ = x[wide * control + k];",
-            "*to++ = x[wide * control];",
+            "*to++ = x[(wide * control + k) * apart];",
+            "*to++ = x[wide * control * apart];",
         ),
     ),
     *errors_in(
