@@ -80,7 +80,7 @@ Sparsity sparsity(Team &team, std::int64_t rows, std::int64_t columns, const Vis
         found[p] = mine; // of exactly this size, where one that grew may have twice as much
     });
     std::partial_sum(made.start.begin(), made.start.end(), made.start.begin());
-    make_large(made.column, size_of(made.start.back()));
+    make_large(made.column, size_of(made.start.back()), team);
     team.run(pieces, [&](std::size_t p, std::size_t) {
         std::copy(found[p].begin(), found[p].end(), made.column.begin() + made.start[p * piece]);
         std::vector<std::int32_t>().swap(found[p]);
@@ -89,10 +89,10 @@ Sparsity sparsity(Team &team, std::int64_t rows, std::int64_t columns, const Vis
 }
 
 /// A matrix of zeros.
-inline BlockRows with_pattern(Sparsity where, int high, int wide) {
+inline BlockRows with_pattern(Sparsity where, int high, int wide, Team &team) {
     const std::size_t numbers = where.column.size() * size_of(high) * size_of(wide);
     return {high, wide, std::move(where.start), std::move(where.column),
-            large<float>(numbers + BlockRows::slack)};
+            large<float>(numbers + BlockRows::slack, team)};
 }
 
 /// Where the diagonal block of a row stands.

@@ -65,8 +65,8 @@ Convergence conjugate_gradients(ElasticOperator<double> &k, Search search,
                                 const Watch &watch) {
     const std::size_t length = 3 * static_cast<std::size_t>(k.controls());
     Pieces pieces(length, team);
-    std::vector<double> r = large<double>(length + padding), p = large<double>(length + padding),
-                        q = large<double>(length);
+    std::vector<double> r = large<double>(length + padding, team),
+                        p = large<double>(length + padding, team), q = large<double>(length, team);
     Convergence found;
     const auto true_residual = [&] {
         k.apply(x, q.data());

@@ -88,13 +88,13 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
     batch_.push_back(0);
     for (const Chunk &chunk : chunks_.parts)
         batch_.push_back(batch_.back() + (chunk.tets + lanes_ - 1) / lanes_);
-    make_large(first_, size(batch_.back() * per_tet * lanes_));
-    make_large(region_, size(batch_.back() * lanes_));
+    make_large(first_, size(batch_.back() * per_tet * lanes_), team_);
+    make_large(region_, size(batch_.back() * lanes_), team_);
     met_.resize(size(batch_.back()));
     if (forms_shapes<T>(tets.degree)) {
-        make_large(points_, size(3 * (chunks_.controls + chunks_.foreign)) + padding);
+        make_large(points_, size(3 * (chunks_.controls + chunks_.foreign)) + padding, team_);
     } else {
-        make_large(geometry_, size(batch_.back() * 9 * lanes_));
+        make_large(geometry_, size(batch_.back() * 9 * lanes_), team_);
     }
     team_.run(chunks_.parts.size(), [&](std::size_t c, std::size_t) {
         const Chunk &chunk = chunks_.parts[c];
@@ -210,7 +210,7 @@ template <class T> bool ElasticOperator<T>::may_read_past(const Chunk &chunk) co
 template <class T>
 void ElasticOperator<T>::forces_of_chunk(std::size_t c, const T *u, T *f, T *f_foreign, int sides,
                                          bool alone, std::vector<T> &scratch) {
-    const int beside = sides == 1 ? 0 : sides - sides % sides_beside(lanes_);
+    const int beside = sides == 1 ? 0 : sides_beside(lanes_, sides);
     if (beside > 0)
         forces_beside(c, u, f, f_foreign, sides, alone, scratch);
     for (int side = beside; side < sides; ++side)

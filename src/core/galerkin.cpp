@@ -139,8 +139,8 @@ Columns columns_of(const BlockRows &a, std::int64_t columns, Team &team) {
     Columns found{std::vector<std::int64_t>(size_of(columns) + 1),
                   std::vector<std::int32_t>(a.column.size()),
                   std::vector<std::uint32_t>(a.column.size())};
-    for (const std::int32_t c : a.column)
-        ++found.start[size_of(c) + 1];
+    in_turn(team, a.column.size(),
+            [&](std::size_t at) { ++found.start[size_of(a.column[at]) + 1]; });
     std::partial_sum(found.start.begin(), found.start.end(), found.start.begin());
     std::vector<std::int64_t> next(found.start.begin(), found.start.end() - 1);
     in_turn(team, size_of(a.rows()), [&](std::size_t i) {
@@ -160,7 +160,7 @@ std::optional<BlockRows> galerkin(const BlockRows &a, const BlockRows &p, const 
     Sparsity found = pattern_of_coarse(ap, columns, team);
     if (found.column.size() > most)
         return std::nullopt;
-    BlockRows coarse = with_pattern(std::move(found), motions, motions);
+    BlockRows coarse = with_pattern(std::move(found), motions, motions, team);
     Slabs(a, p, columns, ap, coarse, kernels.of(a.high), team).run();
     mirror(coarse, team);
     return coarse;

@@ -71,12 +71,23 @@ struct BlockKernel {
                  double beta, double *p);
 };
 
-/// Right-hand sides that `Kernel::apply_many` works on at once, if not twice as many.
-constexpr int sides_beside(int lanes) { return lanes < 4 ? lanes : 4; }
+/// Whether groups of right-hand sides are of eight.
+constexpr bool by_eights(int lanes, int sides) {
+    return lanes >= 8 && (sides % 8 == 0 || sides % 8 > 5);
+}
+
+/// How many of the first sides `Kernel::apply_many` works on: in groups of eight, or of four (two
+/// where a register holds two). The last one may lack two of eight, or one of the four that a
+/// register holds, and is quicker than its sides one by one.
+constexpr int sides_beside(int lanes, int sides) {
+    const int left = sides % (lanes < 4 ? lanes : 4);
+    const bool nearly_whole = by_eights(lanes, sides) || (lanes == 4 && left == 3);
+    return nearly_whole ? sides : sides - left;
+}
 
 /// What is done on batches. apply_many takes several right-hand sides beside each other, u and f
-/// (controls, 3, sides): the first ones, as many as there are whole groups of `sides_beside`, and
-/// leaves the forces of the others zero. Lanes are sides there.
+/// (controls, 3, sides): the first `sides_beside`, and leaves the forces of the others zero. Lanes
+/// are sides there, and past each row of u 8 numbers may be read but are not used.
 ///
 /// row: the numbers that `apply` and `work` take a control to have. 3; or row_of_area:
 /// displacements and forces of a control beside each other, each with a spare number, so that whole

@@ -172,11 +172,13 @@ BEZSOMA_INLINE Batch<T, beside> tet_of_lane(const Batch<T, lanes> &batch, int la
     return tet;
 }
 
-/// Lanes are sides here, `beside` at once, and batches are read tet by tet.
+/// Lanes are sides here, `beside` at once (the last ones may be fewer), and batches are read tet by
+/// tet.
 template <int n, class T, int lanes, int beside>
 void apply_beside(const Batches<T> &given, int sides) {
     const Batches<T> b = given;          // in registers, as in `apply_in_area`
     Lanes<T, beside> x[3 * controls(n)]; // displacements, then forces
+    const int end = sides_beside(lanes, sides);
     std::int64_t next = 0;
     for (std::int64_t i = 0; i < b.count; ++i) {
         if (i % apart == 0) {
@@ -187,7 +189,7 @@ void apply_beside(const Batches<T> &given, int sides) {
         for (int lane = 0; lane < lanes; ++lane) {
             const std::int32_t *first = b.first + i * entities(n) * lanes + lane;
             const Batch<T, beside> tet = tet_of_lane<T, lanes, beside>(batch, lane);
-            for (int side = 0; side + beside <= sides; side += beside) {
+            for (int side = 0; side < end; side += beside) {
                 each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
                     const T *from =
                         place(b.u, b.u_end, run<n, lanes>(first[entity * lanes], sides)) + side;
@@ -198,23 +200,32 @@ void apply_beside(const Batches<T> &given, int sides) {
                 elastic_forces<n, T, beside>(tet, x, x, {b.u + next, b.f + next});
                 // What a batch brings of one side a tet brings of as many as there are lanes.
                 next += called<n, T, beside>;
-                each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
-                    T *to = place(b.f, b.f_end, run<n, lanes>(first[entity * lanes], sides)) + side;
+                const auto forces = [&](const auto &add) BEZSOMA_INLINED {
+                    each_run_of_tet<n>([&]<int rows>(auto entity, auto row) BEZSOMA_INLINED {
+                        T *to =
+                            place(b.f, b.f_end, run<n, lanes>(first[entity * lanes], sides)) + side;
 #pragma GCC unroll 16
-                    for (int r = 0; r < rows; ++r)
-                        store<T, beside>(to + r * sides, load<T, beside>(to + r * sides) +
-                                                             x[entity_order<n>.row[row + r]]);
-                });
+                        for (int r = 0; r < rows; ++r)
+                            add(to + r * sides, x[entity_order<n>.row[row + r]]);
+                    });
+                };
+                using R = Lanes<T, beside>;
+                if (end - side >= beside)
+                    forces([](T *to, R v)
+                               BEZSOMA_INLINED { store<T, beside>(to, load<T, beside>(to) + v); });
+                else
+                    forces([many = end - side](T *to, R v)
+                               BEZSOMA_INLINED { add_first<T, beside>(to, v, many); });
             }
         }
     }
 }
 
 template <int n, class T, int lanes> void apply_many(const Batches<T> &b, int sides) {
-    constexpr int few = sides_beside(lanes);
-    if constexpr (lanes >= 2 * few)
-        if (sides % (2 * few) == 0)
-            return apply_beside<n, T, lanes, 2 * few>(b, sides);
+    constexpr int few = lanes < 4 ? lanes : 4;
+    if constexpr (lanes >= 8)
+        if (by_eights(lanes, sides))
+            return apply_beside<n, T, lanes, 8>(b, sides);
     apply_beside<n, T, lanes, few>(b, sides);
 }
 

@@ -43,4 +43,30 @@ template <class T, int lanes> BEZSOMA_INLINE void store(T *to, Lanes<T, lanes> v
     *reinterpret_cast<typename Simd<T, lanes>::Loose *>(to) = v;
 }
 
+/// Half of a register's numbers.
+template <class T, int lanes, bool upper>
+BEZSOMA_INLINE Lanes<T, lanes / 2> half(Lanes<T, lanes> v) {
+    constexpr int b = upper ? lanes / 2 : 0;
+    if constexpr (lanes == 4)
+        return __builtin_shufflevector(v, v, b, b + 1);
+    else
+        return __builtin_shufflevector(v, v, b, b + 1, b + 2, b + 3);
+}
+
+/// Adds the first `many` numbers of a register to memory and touches no others. In parts that are
+/// read as they were stored: after a store under a mask a read waits until it is done.
+template <class T, int lanes> BEZSOMA_INLINE void add_first(T *to, Lanes<T, lanes> v, int many) {
+    if constexpr (lanes == 2) {
+        if (many > 0)
+            to[0] += v[0];
+        if (many > 1)
+            to[1] += v[1];
+    } else if (constexpr int part = lanes / 2; many >= part) {
+        store<T, part>(to, load<T, part>(to) + half<T, lanes, false>(v));
+        add_first<T, part>(to + part, half<T, lanes, true>(v), many - part);
+    } else {
+        add_first<T, part>(to, half<T, lanes, false>(v), many);
+    }
+}
+
 } // namespace bezsoma::BEZSOMA_ISA

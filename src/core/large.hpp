@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -9,12 +10,15 @@
 #include <sys/mman.h>
 #endif
 
+#include "team.hpp"
+
 namespace bezsoma {
 
 /// Makes n zeros of a vector, in pages of 2 MB where the system gives them: what is kept of a mesh
 /// is walked through at every product, and finding small pages takes a part of that time. Only
-/// whole pages within it are asked for, so that it takes no more than its size.
-template <class T> void make_large(std::vector<T> &v, std::size_t n) {
+/// whole pages within it are asked for, so that it takes no more than its size. The team's watch is
+/// asked now and then: to clear gigabytes takes seconds.
+template <class T> void make_large(std::vector<T> &v, std::size_t n, Team &team) {
     v.clear();
     v.reserve(n);
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
@@ -25,13 +29,17 @@ template <class T> void make_large(std::vector<T> &v, std::size_t n) {
     if (first < end)
         madvise(reinterpret_cast<void *>(first), end - first, MADV_HUGEPAGE);
 #endif
-    v.resize(n);
+    constexpr std::size_t piece = (std::size_t{1} << 25) / sizeof(T);
+    while (v.size() < n) {
+        team.ask();
+        v.resize(std::min(n, v.size() + piece));
+    }
 }
 
 /// The same for a new one.
-template <class T> std::vector<T> large(std::size_t n) {
+template <class T> std::vector<T> large(std::size_t n, Team &team) {
     std::vector<T> v;
-    make_large(v, n);
+    make_large(v, n, team);
     return v;
 }
 

@@ -38,7 +38,7 @@ MixedOperator::MixedOperator(const MixedTets &tets, const Kernels &kernels, Team
 void MixedOperator::pack(const ElasticTets &tets) {
     const std::int64_t lanes = lanes_.lanes();
     region_.resize(size(lanes_.batches() * lanes));
-    make_large(geometry_, size(lanes_.batches() * 9 * lanes));
+    make_large(geometry_, size(lanes_.batches() * 9 * lanes), team_);
     team_.run(u_.parts(), [&](std::size_t part, std::size_t) {
         lanes_.each(u_.chunks(), part,
                     [&](std::int64_t tet, std::int64_t batch, std::int64_t lane) {

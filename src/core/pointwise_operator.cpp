@@ -75,10 +75,10 @@ template <class T> void PointwiseOperator<T>::group(const ElasticTets &tets) {
             }
         group_.push_back(groups_.size());
     }
-    make_large(first_, size(batch * entities_of_tet(tets.degree) * lanes_));
+    make_large(first_, size(batch * entities_of_tet(tets.degree) * lanes_), team_);
     if (p_)
         first_pressure_.resize(size(batch * entities_of_tet(p_->chunks().degree) * lanes_));
-    make_large(geometry_, size(batch * 10 * lanes_));
+    make_large(geometry_, size(batch * 10 * lanes_), team_);
     tet_.resize(size(batch * lanes_));
 }
 

@@ -72,8 +72,8 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
         rows_[dim] = static_cast<std::int64_t>(rows);
         control_[dim].resize(all);
         vertices_[dim].resize(all * (dim + 1));
-        make_large(value_[dim], dim > 0 ? all * triangle : 0);
-        make_large(z_[dim], dim > 0 ? all * rows : 0);
+        make_large(value_[dim], dim > 0 ? all * triangle : 0, team_);
+        make_large(z_[dim], dim > 0 ? all * rows : 0, team_);
         moments_from_[dim] = moments;
         moments += all * size(moments_of(static_cast<int>(dim)));
         team_.run(batches, [&](std::size_t batch, std::size_t) {
@@ -99,7 +99,7 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
     }
     if (moments > std::numeric_limits<std::uint32_t>::max())
         throw std::length_error("more than 2^32 moments of entities do not fit 32-bit places");
-    make_large(moments_, moments);
+    make_large(moments_, moments, team_);
 }
 
 /// Where the moments of each vertex stand, in a fixed order.
@@ -119,7 +119,7 @@ void Preconditioner::list_moments(std::int64_t vertices) {
     };
     each([&](std::size_t vertex, std::size_t) { ++moment_start_[vertex + 1]; });
     std::partial_sum(moment_start_.begin(), moment_start_.end(), moment_start_.begin());
-    make_large(moment_, size(moment_start_.back()));
+    make_large(moment_, size(moment_start_.back()), team_);
     std::vector<std::int64_t> at(moment_start_.begin(), moment_start_.end() - 1);
     each([&](std::size_t vertex, std::size_t where) {
         moment_[size(at[vertex]++)] = static_cast<std::uint32_t>(where);

@@ -153,7 +153,7 @@ BlockRows smoothed(const BlockRows &a, const std::vector<float> &inverse, double
                          if (const auto g = groups.of[size_of(a.column[at])]; g >= 0)
                              take(g);
                  }),
-        a.high, motions);
+        a.high, motions, team);
     Places places(team.size());
     const auto step = static_cast<float>(omega);
     each_row(team, a.rows(), [&](std::size_t i, std::size_t thread) {

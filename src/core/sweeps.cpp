@@ -40,7 +40,7 @@ template <int n> void inverse_of_block(const float *block, float *inverse) {
 Sweeps::Sweeps(BlockRows matrix, const RowKernels &kernels, Team &team)
     : a_(std::move(matrix)), kernel_(kernels.of(a_.high)), diagonal_(size_of(a_.rows())),
       rows_a_piece_(a_.high == 3 ? 512 : 64) {
-    colour();
+    colour(team);
     std::vector<std::int32_t> rank(piece_.size());
     for (std::size_t c = 0; c + 1 < colour_start_.size(); ++c)
         for (auto p = size_of(colour_start_[c]); p < size_of(colour_start_[c + 1]); ++p)
@@ -75,11 +75,12 @@ void Sweeps::arrange(std::size_t i, const std::vector<std::int32_t> &rank, Row &
 }
 
 /// Greedy: each piece takes the first colour that no neighbour has.
-void Sweeps::colour() {
+void Sweeps::colour(Team &team) {
     const auto pieces = size_of((a_.rows() + rows_a_piece_ - 1) / rows_a_piece_);
     std::vector<std::int32_t> of(pieces, -1);
     std::vector<std::size_t> taken; // by colour: the last piece that met it at a neighbour
     for (std::size_t p = 0; p < pieces; ++p) {
+        team.ask();
         const std::size_t end = std::min((p + 1) * size_of(rows_a_piece_), size_of(a_.rows()));
         for (auto at = size_of(a_.start[p * size_of(rows_a_piece_)]); at < size_of(a_.start[end]);
              ++at)

@@ -39,7 +39,7 @@ private:
         std::vector<std::int32_t> column;
         std::vector<float> value;
     };
-    void colour();
+    void colour(Team &team);
     void arrange(std::size_t row, const std::vector<std::int32_t> &rank, Row &copy);
 
     BlockRows a_;

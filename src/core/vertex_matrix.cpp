@@ -78,7 +78,7 @@ BlockRows vertex_matrix(const ElasticTets &tets, const std::int32_t *corners, st
                          for (std::size_t j = 0; j < 4; ++j)
                              take(corners[size_of(around.corner[i] / 4) * 4 + j]);
                  }),
-        3, 3);
+        3, 3, team);
     const Rows rows{tets, corners, around, fixed};
     std::vector<std::vector<std::int32_t>> places(team.size());
     std::vector<std::vector<double>> sums(team.size());

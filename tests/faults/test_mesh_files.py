@@ -17,9 +17,11 @@ import numpy as np
 import pytest
 
 from bezsoma.errors import InputError, MeshError
-from bezsoma.mesh import TetMesh, block, read_mesh, write_mesh
+from bezsoma.mesh import ControlNet, Field, TetMesh, block, read_mesh, write_mesh
 from bezsoma.mesh.abaqus import POINTS
 from bezsoma.mesh.files import WRITTEN
+from bezsoma.view.grid import Cells
+from bezsoma.view.vtk import write_surface_vtu, write_vtu
 
 PLAIN: dict[str, Any] = {
     "points": np.eye(4, 3),
@@ -297,6 +299,16 @@ CELLS: dict[str, tuple[list[tuple[str, Any]], list[str]]] = {
 def test_other_cells_than_straight_tets(name: str, tmp_path: Path) -> None:
     cells, words = CELLS[name]
     refused(words, foreign(tmp_path / "other.vtu", cells))
+
+
+@pytest.mark.parametrize("kind", ["lagrange", "bezier"])
+def test_curved_cells_of_our_own(kind: Cells, tmp_path: Path) -> None:
+    net = ControlNet(block(), 2)
+    field = Field(net, np.zeros((net.count, 3)))
+    words = [f"VTK_{kind.upper()}_TETRAHEDRON", "straight", "curved", "read mesh.npz beside it"]
+    refused(words, write_vtu(tmp_path / "solid.vtu", net.mesh, field, cells=kind))
+    words[0] = f"VTK_{kind.upper()}_TRIANGLE"
+    refused(words, write_surface_vtu(tmp_path / "skin.vtu", net.mesh, field, cells=kind))
 
 
 def test_untagged_triangles_lines_and_points_are_left_out(tmp_path: Path) -> None:

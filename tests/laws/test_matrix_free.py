@@ -12,7 +12,8 @@ import pytest
 from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats
 from bezsoma.equations.assembled import BlockMatrix, assembled
-from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.matrix_free import MatrixFree, _rows
+from bezsoma.errors import InputError
 from bezsoma.mesh import ControlNet, TetMesh, block
 from bezsoma.mesh.solids import shell
 from tolerances import ROUNDING, SINGLE
@@ -303,6 +304,44 @@ def test_shapes_that_do_not_fit_are_refused() -> None:
         MatrixFree(net, LAME[:0]).kernel  # noqa: B018
     with pytest.raises(ValueError, match="lacks that instruction set"):
         MatrixFree(net, LAME[:1], 0, "mmx").kernel  # noqa: B018
+
+
+@pytest.mark.parametrize("number", [-1, 2])
+def test_a_region_that_lame_lacks_is_refused_by_all(number: int) -> None:
+    net = ControlNet(block(), 2)
+    region = np.zeros(len(net.mesh.tets), np.int64)
+    region[3] = number
+    operator = MatrixFree(net, LAME[:2], region=region)
+    with pytest.raises(ValueError, match="region must number"):
+        operator @ np.zeros((net.count, 3))
+    with pytest.raises(InputError, match=f"region must number .* 2 rows.* tet 3 has {number};"):
+        operator.diagonal()
+    for wrong in (region[1:], region + 0.5):
+        with pytest.raises(InputError, match="one whole number a tet is needed"):
+            MatrixFree(net, LAME[:2], region=wrong).diagonal()
+
+
+def test_what_is_no_array_of_floats() -> None:
+    """Complex numbers would lose their imaginary part; lists and whole numbers are taken."""
+    net = ControlNet(block(), 2)
+    operator = MatrixFree(net, LAME[:1])
+    x = vectors(net)[..., 0]
+    for apply in (operator.__matmul__, operator.single):
+        with pytest.raises(ValueError, match=r"x is complex128, .* x\.real and x\.imag"):
+            apply(x + 1j)
+    expected = operator @ x
+    assert ((operator @ x.tolist()) == expected).all()
+    assert ((operator @ np.asfortranarray(x)) == expected).all()
+    assert (operator.single(x.tolist()) == operator.single(x.astype(np.float32))).all()
+    whole = np.arange(3 * net.count).reshape(-1, 3) % 7
+    assert ((operator @ whole) == (operator @ whole.astype(float))).all()
+
+
+def test_floats_one_after_another_are_not_copied() -> None:
+    x = vectors(ControlNet(block(), 2), sides=4)
+    for given in (x, x[..., 0].copy()):
+        rows, shape = _rows(given, np.float64)
+        assert np.shares_memory(rows, given) and shape == given.shape
 
 
 @pytest.mark.parametrize("degree", DEGREES)

@@ -219,6 +219,29 @@ def test_pickles_and_deep_copies_whole() -> None:
         assert repr(other) == repr(mesh)
 
 
+def test_the_mean_size_neither_keeps_volumes_nor_drops_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two solves at once on one mesh: whatever one is about, the other finds what it left."""
+    mesh = block((3, 2, 1), (3, 2, 2), irregular=0.3)
+    size = mesh.mean_size
+    assert "volumes" not in mesh.__dict__
+    assert size == float(np.cbrt(mesh.volumes.mean()))
+    mesh, other = (block((3, 2, 1), (3, 2, 2), irregular=0.3) for _ in range(2))
+    expected, found = other.volumes, TetMesh._volumes
+
+    def met(self: TetMesh) -> np.ndarray:
+        """Another solve reads the volumes just then."""
+        monkeypatch.setattr(TetMesh, "_volumes", found)
+        assert (self.volumes == expected).all()
+        return found(self)
+
+    monkeypatch.setattr(TetMesh, "_volumes", met)
+    assert mesh.mean_size == size
+    assert "volumes" in mesh.__dict__
+    assert mesh.mean_size == size
+
+
 @pytest.mark.real_data
 def test_the_real_face(data: Path) -> None:
     with np.load(data / "face_small/face_small.npz") as face:

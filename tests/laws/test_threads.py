@@ -8,6 +8,8 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,16 +17,21 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
-from bezsoma import _core
+from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats
+from bezsoma.equations.assembled import assembled
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.element import lame_constants
 from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.mixed_free import MixedFree
+from bezsoma.equations.mixed_pointwise_free import PointwiseMixed
+from bezsoma.equations.pointwise_free import PointwiseFree
 from bezsoma.errors import InputError
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Precedence, Traction
 from bezsoma.mesh import ControlNet, TetMesh, block
+from bezsoma.refinement.products import displacement_product
 from bezsoma.solvers import Solution, solve
-from bezsoma.solvers.multigrid import preconditioner
+from bezsoma.solvers.multigrid import preconditioned, preconditioner
 from cases.written import case_file
 from processes import prelude
 
@@ -284,7 +291,11 @@ def test_an_error_in_the_progress_comes_through() -> None:
 # ------------------------------------------------------------------ how many
 
 
-@pytest.mark.parametrize("given", ["two", " ", "1.5", "-1", "99999", "nan", "0x4"])
+ODD = ("1_0", "+2", "2 3", "\u0662", "\uff12", "\xa02")
+"""What int() takes, or nearly."""
+
+
+@pytest.mark.parametrize("given", ["two", " ", "1.5", "-1", "99999", "nan", "0x4", *ODD])
 def test_a_wrong_number_in_the_environment(given: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("BEZSOMA_THREADS", given)
     with pytest.raises(
@@ -293,10 +304,37 @@ def test_a_wrong_number_in_the_environment(given: str, monkeypatch: pytest.Monke
         solve(moved(1, (2, 2, 2)))
 
 
-@pytest.mark.parametrize("given", [-1, 1.5, True, "all", 99999, float("nan"), [2], 2**70])
+@pytest.mark.parametrize(
+    "given",
+    [-1, 1.5, True, np.True_, "all", "2", b"2", 99999, float("nan"), [2], np.array([2]), 2**70],
+)
 def test_a_wrong_number_in_python(given: Any) -> None:
     with pytest.raises(InputError, match=r"threads = .* is no number of threads: give 1 to"):
         solve(moved(1, (2, 2, 2)), threads=given)
+
+
+@pytest.mark.parametrize("given", [10**6, 1025, -1, True, None, "2"])
+def test_no_operator_starts_a_million_threads(given: Any) -> None:
+    mesh = block()
+    net, pressures, moduli = ControlNet(mesh, 2), ControlNet(mesh, 1), LAME[:1]
+    few = MatrixFree(net, moduli, 1)
+    laws, rule = (_core.Law("linear", [2.0, 0.6]),), bernstein.simplex(2, 3)
+    held = np.zeros((net.count, 3), bool)
+    tets = np.ones(len(mesh.tets))
+    takers: list[Callable[[], Any]] = [
+        lambda: MatrixFree(net, moduli, given).kernel,
+        lambda: MatrixFree(net, moduli, given).single(net.points),
+        lambda: preconditioned(replace(few, threads=given), held),
+        lambda: MixedFree(net, pressures, moduli, given).kernel,
+        lambda: PointwiseFree(net, laws, *rule, given).kernel,
+        lambda: PointwiseMixed(net, pressures, laws, *rule, given).kernel,
+        lambda: assembled(net, tets, tets, given),
+        lambda: displacement_product(net, moduli, given),
+    ]
+    for taker in takers:
+        with pytest.raises(InputError, match=f"threads = {given!r} is no number .* 1 to 1024, or"):
+            taker()
+    assert MatrixFree(net, moduli, np.int64(2)).kernel.threads == 2  # type: ignore[arg-type]
 
 
 def test_the_environment_is_heard_and_the_argument_before_it(
@@ -309,6 +347,8 @@ def test_the_environment_is_heard_and_the_argument_before_it(
     assert "2 threads" in solve(body, solver="multigrid", threads=np.int64(2)).method
     cores = os.cpu_count()
     assert f"{cores} thread" in solve(body, solver="multigrid", threads=0).method
+    monkeypatch.setenv("BEZSOMA_THREADS", "\t0002\n")
+    assert "2 threads" in solve(body, solver="multigrid").method
     monkeypatch.setenv("BEZSOMA_THREADS", "")  # as a shell leaves what it empties
     assert f"{cores} thread" in solve(body, solver="multigrid").method
 

@@ -17,6 +17,8 @@ import pytest
 from bezsoma.bernstein import count, domain_points, interpolation, values
 from bezsoma.errors import InputError
 from bezsoma.mesh import BrokenField, ControlNet, Field, TetMesh, ball, block, read_mesh
+from bezsoma.mesh.foreign import listing_of
+from bezsoma.mesh.tagged import mesh_of
 from bezsoma.view.lagrange import lattice, vtk_order
 from bezsoma.view.vtk import write_surface_vtu, write_vtu
 
@@ -189,6 +191,68 @@ def test_straight_cells_are_read_back_as_a_mesh(tmp_path: Path) -> None:
     assert np.allclose(back.volumes, mesh.volumes, rtol=1e-14)
     middles = [each.points[each.tets].mean(axis=1) for each in (back, mesh)]
     assert np.allclose(*middles, atol=1e-15)
+
+
+def three_regions() -> TetMesh:
+    """Two that have tets, and one between them that has none."""
+    plain = block(cells=(2, 1, 1))
+    region = 2 * (plain.points[plain.tets].mean(axis=1)[:, 0] > 0.5)
+    return TetMesh(plain.points, plain.tets, region, ("fat & skin", "marrow", "mus\u00e9cle <1>"))
+
+
+def test_regions_and_their_names_are_read_back(tmp_path: Path) -> None:
+    mesh = three_regions()
+    path = write_vtu(tmp_path / "a.vtu", mesh, {"u": field_of(mesh, 1)})
+    for back in (read_mesh(path), read_mesh(path, tags="region")):
+        assert back.regions == mesh.regions
+        assert np.array_equal(back.region, mesh.region)
+    named = read_mesh(path, regions={"fat": 0})
+    assert named.regions == ("fat", *mesh.regions[1:])
+    assert np.array_equal(named.region, mesh.region)
+    with pytest.raises(InputError, match="'marrow' is given twice"):
+        read_mesh(path, regions={"marrow": 0})
+    with pytest.raises(InputError, match="tag 7, but the file has none"):
+        read_mesh(path, regions={"fat": 7})
+
+
+def test_regions_are_known_beside_what_another_program_added(tmp_path: Path) -> None:
+    mesh = three_regions()
+    read = meshio.read(write_vtu(tmp_path / "a.vtu", mesh))
+    read.cell_data["chosen"] = [np.arange(len(mesh.tets)) % 5]
+    assert mesh_of(listing_of(read, None, wanted=True), None, None).regions == mesh.regions
+    assert mesh_of(listing_of(read, "chosen", wanted=False), None, None).regions[1] == "region 1"
+
+
+OURS: dict[str, Any] = {"software": "bezsoma 9", "regions": ["fat", "marrow", "muscle"]}
+DAMAGED: dict[str, Any] = {
+    "cut short": json.dumps(OURS)[:-5],
+    "no text": "\udcff",
+    "nested without end": "[" * 100_000,
+    "no table": "[1, 2]",
+    "of another program": json.dumps({**OURS, "software": "other"}),
+    "by a number": json.dumps({**OURS, "software": 3}),
+    "no regions": json.dumps({"software": "bezsoma 9"}),
+    "a number for regions": json.dumps({**OURS, "regions": 3}),
+    "a table for regions": json.dumps({**OURS, "regions": {"fat": 1, "marrow": 2, "muscle": 3}}),
+    "numbers for names": json.dumps({**OURS, "regions": [1, 2, 3]}),
+    "a blank name": json.dumps({**OURS, "regions": ["fat", " ", "muscle"]}),
+    "a name twice": json.dumps({**OURS, "regions": ["fat", "fat", "muscle"]}),
+    "too few names": json.dumps({**OURS, "regions": ["fat", "marrow"]}),
+    "numbers, not bytes": np.arange(9.0),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGED)
+def test_damaged_words_are_passed_over(name: str, tmp_path: Path) -> None:
+    mesh, words = three_regions(), DAMAGED[name]
+    read = meshio.read(write_vtu(tmp_path / "a.vtu", mesh))
+    assert listing_of(read, None, wanted=False).tets.names[1] == "marrow"
+    if isinstance(words, str):
+        words = np.frombuffer(words.encode(errors="surrogateescape"), np.uint8)
+    read.field_data["metadata"] = words
+    back = mesh_of(listing_of(read, None, wanted=False), None, None)
+    assert back.regions == ("tissue", "region 2")
+    assert np.array_equal(2 * back.region, mesh.region)
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4, 6, 8, 10])

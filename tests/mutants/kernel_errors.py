@@ -86,15 +86,24 @@ OPERATOR = (
         MATRIX_FREE,
         (
             "several sides whose forces replace those of the tets before",
-            "load<T, beside>(to + r * sides) +",
-            "0 * load<T, beside>(to + r * sides) +",
+            "store<T, beside>(to, load<T, beside>(to) + v);",
+            "store<T, beside>(to, 0 * load<T, beside>(to) + v);",
         ),
         (
             "several sides that each tet takes a group too few of",
-            "side + beside <= sides; side += beside",
-            "side + beside < sides; side += beside",
+            "side < end; side += beside",
+            "side + beside < end; side += beside",
         ),
         ("the work of the first lane taken for all", "all += sum[l];", "all += sum[0];"),
+    ),
+    *errors_in(
+        f"{CORE}/lanes.hpp",
+        MATRIX_FREE,
+        (
+            "a group of sides that is not full, without its last one",
+            "half<T, lanes, true>(v), many - part);",
+            "half<T, lanes, true>(v), many - part - 1);",
+        ),
     ),
     *errors_in(
         f"{CORE}/elastic_operator.cpp",

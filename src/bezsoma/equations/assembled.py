@@ -12,6 +12,7 @@ from scipy.sparse import bsr_array
 
 from bezsoma import _core
 from bezsoma.arrays import Floats, Ints, frozen
+from bezsoma.equations.threads import thread_count
 from bezsoma.mesh import ControlNet
 
 
@@ -70,8 +71,8 @@ def assembled(net: ControlNet, lam: Floats, mu: Floats, threads: int = 0) -> Blo
     Each block is summed over its tets in ascending order by one thread, so that the matrix has
     the same bits for any number of them (0: all cores), and is symmetric to the last bit.
     """
-    mesh = net.mesh
+    mesh, number = net.mesh, thread_count(threads)
     starts, columns = pattern(net.of_tet, net.count)
     tets = (mesh.gradients, mesh.volumes, lam, mu)
-    blocks = _core.assembled(net.degree, net.of_tet, *tets, starts, columns, threads)
+    blocks = _core.assembled(net.degree, net.of_tet, *tets, starts, columns, number)
     return BlockMatrix(frozen(starts), frozen(columns), frozen(blocks))

@@ -13,7 +13,8 @@ import numpy.typing as npt
 from bezsoma import _core
 from bezsoma.arrays import Floats, Int32s, Ints, on_lines
 from bezsoma.bernstein import gradient_products
-from bezsoma.errors import counted
+from bezsoma.equations.threads import thread_count
+from bezsoma.errors import InputError, counted
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.topology import determinants, slices
 
@@ -58,11 +59,12 @@ class MatrixFree:
     @cached_property
     def kernel(self) -> _core.MatrixFree:
         """The core's side of it."""
-        return _core.MatrixFree(self.walk(), self.threads, self.instructions)
+        return _core.MatrixFree(self.walk(), thread_count(self.threads), self.instructions)
 
     @cached_property
     def _single(self) -> _core.MatrixFree:
-        return _core.MatrixFree(self.walk(), self.threads, self.instructions, single=True)
+        threads = thread_count(self.threads)
+        return _core.MatrixFree(self.walk(), threads, self.instructions, single=True)
 
     @property
     def runs_on(self) -> str:
@@ -76,24 +78,23 @@ class MatrixFree:
         """
         return walk(self.net, self.lame / unit, first, self.region)
 
-    def __matmul__(self, x: Floats) -> Floats:
+    def __matmul__(self, x: npt.ArrayLike) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N.
 
-        Sides are worked on eight or four at a time (two where registers hold two), what is left
-        over one by one: eight cost 3.6 to 8 times one at degrees 1 to 4, four 2.4 to 4.5 times.
-        Six and seven cost more than eight: zeros that make eight of them are worth it.
+        Sides are worked on eight or four at a time (two where registers hold two); one or two that
+        are left over go one by one. docs/performance.md has what they cost.
         """
-        sides = _rows(x, np.float64)
+        sides, shape = _rows(x, np.float64)
         y = on_lines(sides.shape)
         self.kernel.apply(sides, y)
-        return y.reshape(x.shape)
+        return y.reshape(shape)
 
-    def single(self, x: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    def single(self, x: npt.ArrayLike) -> npt.NDArray[np.float32]:
         """K x in float32 throughout, (c, 3) or (c, 3, s)."""
-        sides = _rows(x, np.float32)
+        sides, shape = _rows(x, np.float32)
         y = on_lines(sides.shape, np.float32)
         self._single.apply_single(sides, y)
-        return y.reshape(x.shape)
+        return y.reshape(shape)
 
     def diagonal(self) -> Floats:
         """The diagonal of K (c, 3) N/mm, for smoothers and scalings; keeps nothing of the mesh.
@@ -110,8 +111,7 @@ class MatrixFree:
         >>> bool(abs(found - K.diagonal).max() < 1e-14 * found.max())
         True
         """
-        mesh = self.net.mesh
-        region = mesh.region if self.region is None else self.region
+        mesh, region = self.net.mesh, self._regions()
         products = gradient_products(self.net.degree, 3)
         weights = np.einsum("ijaa->aij", products).reshape(-1, 16)
         found = np.zeros((self.net.count, 3))
@@ -124,6 +124,27 @@ class MatrixFree:
             np.add.at(found, self.net.closure(3, part), of_tets)
         return found
 
+    def _regions(self) -> Ints:
+        """The region (t,) of each tet, numbers of rows of `lame`: NumPy would count -1 from behind.
+
+        The core refuses the same where it is given them.
+        """
+        tets, rows = len(self.net.mesh.tets), len(self.lame)
+        found = np.asarray(self.net.mesh.region if self.region is None else self.region)
+        if found.shape != (tets,) or found.dtype.kind not in "biu":
+            raise InputError(
+                f"region is {found.dtype} of the shape {found.shape}; one whole number a tet is "
+                f"needed: the shape ({tets},)"
+            )
+        wrong = np.flatnonzero((found < 0) | (found >= rows))
+        if len(wrong):
+            raise InputError(
+                f"region must number rows of lame, which has {counted(rows, 'row')}, from 0 on, "
+                f"and tet {wrong[0]} has {found[wrong[0]]}; give numbers below {rows}, or lame a "
+                "row for each region"
+            )
+        return np.asarray(found, np.int64)
+
     def energy(self, x: Floats) -> float:
         """The stored energy int tau : eps / 2 [N mm], the first term of the paper's eq. 7.
 
@@ -133,11 +154,17 @@ class MatrixFree:
         return self.kernel.work(np.ascontiguousarray(x)) / 2
 
 
-def _rows(x: npt.NDArray[Any], kind: npt.DTypeLike) -> npt.NDArray[Any]:
-    """x (c, 3) or (c, 3, s) as (c, 3, s)."""
-    if x.ndim < 2 or x.shape[1] != 3:
-        raise ValueError(f"x is {x.shape}; it has to be (c, 3), or (c, 3, s) for several sides")
-    return np.ascontiguousarray(x, dtype=kind).reshape(len(x), 3, -1)
+def _rows(x: npt.ArrayLike, kind: npt.DTypeLike) -> tuple[npt.NDArray[Any], tuple[int, ...]]:
+    """x (c, 3) or (c, 3, s) as (c, 3, s), not copied where it is so; and the shape it had."""
+    given = np.asarray(x)
+    if given.ndim < 2 or given.shape[1] != 3:
+        raise ValueError(f"x is {given.shape}; it has to be (c, 3), or (c, 3, s) for several sides")
+    if given.dtype.kind == "c":  # NumPy would drop the imaginary part and only warn
+        raise ValueError(
+            f"x is {given.dtype}, and K x is formed of real numbers; give x.real and x.imag one "
+            "after the other, or as two sides (c, 3, 2)"
+        )
+    return np.ascontiguousarray(given, dtype=kind).reshape(len(given), 3, -1), given.shape
 
 
 def walk(

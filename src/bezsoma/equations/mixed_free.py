@@ -11,6 +11,7 @@ import numpy as np
 from bezsoma import _core
 from bezsoma.arrays import Floats, plain
 from bezsoma.equations.matrix_free import walk
+from bezsoma.equations.threads import thread_count
 from bezsoma.mesh.control_net import ControlNet
 
 
@@ -76,7 +77,7 @@ class MixedFree:
             walk(self.net, self.moduli),
             self.pressure_net.degree,
             self.pressure_net.walked(),
-            self.threads,
+            thread_count(self.threads),
             self.instructions,
         )
 

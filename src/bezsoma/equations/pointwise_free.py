@@ -13,6 +13,7 @@ from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats, Singles, plain
 from bezsoma.equations.inadmissible import refuse_inadmissible
 from bezsoma.equations.matrix_free import walk
+from bezsoma.equations.threads import thread_count
 from bezsoma.mesh.control_net import ControlNet
 
 ROUGH = 1e-3
@@ -39,7 +40,7 @@ def pointwise_kernel(
         points,
         weights,
         bernstein.values(net.degree - 1, points),
-        threads,
+        thread_count(threads),
         instructions,
         single,
         pressures.degree if pressures else 0,

@@ -20,7 +20,7 @@ import numpy as np
 
 from bezsoma.errors import InputError, MeshError
 from bezsoma.mesh.abaqus import read_abaqus, write_abaqus
-from bezsoma.mesh.foreign import grouped, listing_of, masked
+from bezsoma.mesh.foreign import grouped, listing_of, masked, straight
 from bezsoma.mesh.nouns import mesh_given, path_given
 from bezsoma.mesh.npz import read_npz, write_npz
 from bezsoma.mesh.tagged import Listing, mesh_of
@@ -58,10 +58,11 @@ def read_mesh(
     (Netgen), .su2, .bdf and .nas (Nastran), .avs and .f3grid.
 
     `surfaces` and `regions` name tags: {"skin": 1} calls the facets with tag 1 skin. Names in the
-    file (Gmsh's physical groups, Abaqus sets) are kept where they are not named here. Tags that
-    nobody names become "surface 7", "region 7", "edge 7" or "vertex 7"; tag 0 means none, and tets
-    without a region are "tissue". `tags` says which of a file's cell arrays holds the tags, where
-    it is not the one that the format itself defines nor the only array of whole numbers.
+    file (Gmsh's physical groups, Abaqus sets, the regions of a VTU by `write_vtu`) are kept where
+    they are not named here. Tags that nobody names become "surface 7", "region 7", "edge 7" or
+    "vertex 7"; tag 0 means none, and tets without a region are "tissue". `tags` says which of a
+    file's cell arrays holds the tags, where it is not the one that the format itself defines nor
+    the only array of whole numbers.
 
     Triangles, lines and points without a tag or a set are left out; cells other than those and
     straight tets are refused. Points of no tet are dropped (`TetMesh.dropped` counts them).
@@ -166,6 +167,10 @@ def _listing(place: Path, tags: str | None, wanted: bool) -> Listing:
     except InputError:
         raise
     except (Exception, SystemExit) as error:
+        # Of Bezier cells meshio knows the name alone, and trips over it.
+        name = str(error).strip("'")
+        if isinstance(error, KeyError) and name.startswith("VTK_BEZIER"):
+            straight({name})
         reason = " ".join(said.getvalue().split()) or f"{type(error).__name__}: {error}"
         raise MeshError(
             f"it cannot be read as {suffix} ({reason[:300]}); it may be damaged, cut short, or of "

@@ -7,6 +7,8 @@ Formats differ in how they group cells: one number a cell (Gmsh, Medit), or any 
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
 from typing import Any
 from urllib.parse import quote, unquote
 
@@ -14,12 +16,15 @@ import numpy as np
 
 from bezsoma.arrays import Bools, Ints
 from bezsoma.errors import InputError, MeshError
+from bezsoma.mesh.checks import region_names
 from bezsoma.mesh.tagged import Cells, Listing
 from bezsoma.mesh.tets import TetMesh
 from bezsoma.mesh.topology import numbers
 
 TAGS = ("gmsh:physical", "medit:ref", "netgen:index", "su2:tag", "nastran:ref", "avsucd:material")
 """Numbers of cells that a format defines to be tags."""
+OWN_TAGS = "region"
+"""Numbers of tets in files of BezSoma's, whose metadata name them."""
 MOST_TAGS = 256
 """An array of whole numbers with more different values than this numbers cells; it tags none."""
 KINDS = {"tetra": "region", "triangle": "surface", "line": "edge", "vertex": "vertex"}
@@ -28,13 +33,17 @@ KINDS = {"tetra": "region", "triangle": "surface", "line": "edge", "vertex": "ve
 
 def listing_of(foreign: Any, given: str | None, wanted: bool) -> Listing:
     """What meshio read, by kinds of cells; `wanted` says that the user means to name tags."""
-    tags = _tag_array(foreign, given, wanted)
+    own = _own_regions(foreign)
+    tags = _tag_array(foreign, OWN_TAGS if own and given is None else given, wanted)
     kinds = {block.type for block in foreign.cells if len(block.data)}
-    _straight(kinds)
+    straight(kinds)
     cells = {
         cell: _cells(foreign, cell, kind, tags, width)
         for (cell, kind), width in zip(KINDS.items(), (4, 3, 2, 1), strict=True)
     }
+    if own and tags == OWN_TAGS:
+        named = dict(enumerate(own))
+        cells["tetra"] = replace(cells["tetra"], names=named, kept=np.arange(len(own)))
     single = cells["vertex"]
     if foreign.point_sets:
         corners = np.unique(cells["tetra"].rows)
@@ -46,12 +55,36 @@ def listing_of(foreign: Any, given: str | None, wanted: bool) -> Listing:
     return Listing(foreign.points, cells["tetra"], cells["triangle"], cells["line"], single)
 
 
-def _straight(kinds: set[str]) -> None:
+def _own_regions(foreign: Any) -> tuple[str, ...]:
+    """The names of regions 0, 1, ... in a VTU file that `write_vtu` wrote.
+
+    None where its words are damaged, or do not fit its numbers: these are then tags as any.
+    """
+    text = np.asarray(foreign.field_data.get("metadata", ()))
+    regions = foreign.cell_data.get(OWN_TAGS, [])
+    if text.dtype != np.uint8 or not regions or not _whole(regions):
+        return ()
+    try:
+        words = json.loads(text.tobytes())
+        if not (words["software"].startswith("bezsoma") and isinstance(words["regions"], list)):
+            return ()
+        names = region_names(words["regions"])
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return ()
+    numbered = np.concatenate(regions)
+    return names if ((numbered >= 0) & (numbered < len(names))).all() else ()
+
+
+def straight(kinds: set[str]) -> None:
+    """Refuse other cells than those that are read."""
     other = sorted(kinds - KINDS.keys())
     if other:
         curved = [kind for kind in other if kind.rstrip("0123456789") in KINDS]
-        if any(kind.startswith("VTK_LAGRANGE") for kind in other):
-            advice = "where BezSoma wrote the file (displacement.vtu), read mesh.npz beside it"
+        if any(kind.startswith(("VTK_LAGRANGE", "VTK_BEZIER")) for kind in other):
+            advice = (
+                "these are curved; where BezSoma wrote the file (displacement.vtu), read mesh.npz "
+                "beside it"
+            )
         elif len(curved) == len(other):
             advice = "save the mesh with straight cells (order 1)"
         else:

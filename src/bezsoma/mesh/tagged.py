@@ -29,6 +29,8 @@ class Cells:
     """What the file calls a tag."""
     sets: Mapping[str, Ints] = field(default_factory=dict)
     """Named lists of positions in `rows`; a cell may be in several."""
+    kept: Ints = field(default_factory=lambda: np.zeros(0, np.int64))
+    """Tags of tets that are regions even where no tet bears them."""
 
 
 NO_FACETS = Cells(np.zeros((0, 3), np.int64))
@@ -78,12 +80,13 @@ def _regions(cells: Cells, given: Mapping[str, int] | None) -> tuple[Ints, tuple
     chosen = _named_tags(cells, given, "region", "tet")
     if cells.tags is None or (cells.sets and not chosen):
         return _regions_of_sets(cells)
-    tags, region = np.unique(cells.tags, return_inverse=True)
+    both = np.concatenate([cells.tags, cells.kept])
+    tags, region = np.unique(both, return_inverse=True)
     names = [
         chosen.get(tag, cells.names.get(tag, f"region {tag}" if tag else UNNAMED))
         for tag in tags.tolist()
     ]
-    return region.reshape(-1), tuple(names)
+    return region.reshape(-1)[: len(cells.rows)], tuple(names)
 
 
 def _regions_of_sets(cells: Cells) -> tuple[Ints, tuple[str, ...]]:

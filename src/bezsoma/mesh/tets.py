@@ -151,19 +151,21 @@ class TetMesh:
     @cached_property
     def volumes(self) -> Floats:
         """The volume (t,) of each tet in mm3, positive."""
+        return frozen(self._volumes())
+
+    def _volumes(self) -> Floats:
+        """The same, not kept."""
         found = np.empty(len(self.tets))
         for part in slices(len(self.tets)):
             found[part] = np.abs(determinants(self.points[self.tets[part]])) / 6.0
-        return frozen(found)
+        return found
 
     @property
     def mean_size(self) -> float:
         """The edge, mm, of the cube that is as large as a tet on the average; volumes not kept."""
-        kept = "volumes" in self.__dict__
-        size = float(np.cbrt(self.volumes.mean()))
-        if not kept:
-            del self.__dict__["volumes"]
-        return size
+        # Not by way of the cache: another thread may use, or just then fill, what is kept there.
+        kept = self.__dict__.get("volumes")
+        return float(np.cbrt((self._volumes() if kept is None else kept).mean()))
 
     @cached_property
     def gradients(self) -> Floats:

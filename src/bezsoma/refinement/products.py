@@ -11,6 +11,7 @@ from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.mixed_pointwise import MixedPointwise
 from bezsoma.equations.pointwise import Pointwise
+from bezsoma.equations.threads import thread_count
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import Law, MixedLaw
 from bezsoma.mesh.control_net import ControlNet
@@ -41,7 +42,7 @@ def displacement_product(net: ControlNet, lame: Floats, threads: int = 0) -> Pro
     True
     """
     mesh, columns, runs = net.mesh, *_by_entity(net)
-    size = len(columns)
+    size, number = len(columns), thread_count(threads)
 
     def forces(local: Floats, tets: slice) -> Floats:
         """Those of each tet alone (t, m, 3), the controls entity by entity as `local`'s."""
@@ -50,7 +51,7 @@ def displacement_product(net: ControlNet, lame: Floats, threads: int = 0) -> Pro
         corners, region = mesh.tets[tets], mesh.region[tets]
         walk = _core.Walk(net.degree, first, np.arange(count), mesh.points, corners, region, moduli)
         out = np.empty((count * size, 3, 1))
-        _core.MatrixFree(walk, threads, "").apply(local.reshape(-1, 3, 1), out)
+        _core.MatrixFree(walk, number, "").apply(local.reshape(-1, 3, 1), out)
         return out.reshape(local.shape)
 
     moduli = np.ascontiguousarray(lame, dtype=np.float64)

@@ -33,8 +33,8 @@ def estimate(
     swapping needs no more. What no count knows is the fill of a direct solver on a plate or a bar,
     which is less.
 
-    A cube at degree 3 has some 30 controls more an edge entity than at degree 2, yet without a
-    matrix it takes less than twice the memory:
+    At degree 3 a cube has more than three times the controls that it has at degree 2, yet without
+    a matrix it takes less than twice the memory:
 
     >>> from bezsoma.mesh.solids import block
     >>> cube = block(cells=8)

@@ -11,6 +11,7 @@ from bezsoma import _core
 from bezsoma.arrays import Bools, Floats, Int32s, Numbers
 from bezsoma.equations.displacement import Equations
 from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.threads import thread_count
 from bezsoma.errors import NotConverged
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.solvers.krylov import Report, length
@@ -40,7 +41,8 @@ def preconditioned(operator: MatrixFree, held: Bools) -> Callable[[Numbers], Num
     so, in float64 or float32.
     """
     stiff, parts = _parts(operator, held)
-    inverse = _core.Inverse(operator.walk(stiff), *parts, operator.threads, operator.instructions)
+    threads = thread_count(operator.threads)
+    inverse = _core.Inverse(operator.walk(stiff), *parts, threads, operator.instructions)
 
     def z_of(r: Numbers) -> Numbers:
         z, r = np.empty_like(r), np.ascontiguousarray(r)

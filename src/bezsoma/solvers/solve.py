@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -18,6 +19,7 @@ from bezsoma.equations.forces import forces
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.rigid import refuse_rigid_motions
 from bezsoma.equations.stress import volume_change
+from bezsoma.equations.threads import thread_count
 from bezsoma.errors import InputError, NotConverged, unknown
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.control_net import ControlNet
@@ -32,7 +34,6 @@ from bezsoma.solvers.solution import Solution, reactions
 from bezsoma.solvers.start import State, first_displacement, start_checked
 from bezsoma.solvers.watch import Progress, Watch, in_range
 
-MOST_THREADS = 1024
 Steps = int | str | Sequence[float]
 SOLVERS = ("auto", "direct", "multigrid", "cg", "saddle")
 
@@ -155,17 +156,11 @@ def _check(body: Body, solver: str, rtol: float, progress: Progress | None) -> N
 def threads_asked(asked: int | None) -> int:
     """How many threads: as asked for, else as the environment says, else 0 for all cores."""
     given = os.environ.get("BEZSOMA_THREADS") or "0" if asked is None else asked
-    try:
-        number = int(given)
-    except (TypeError, ValueError):
-        number = -1
-    if isinstance(asked, bool | float | str) or not 0 <= number <= MOST_THREADS:
-        where = "BEZSOMA_THREADS" if asked is None else "threads"
-        raise InputError(
-            f"{where} = {given!r} is no number of threads: give 1 to {MOST_THREADS}, or 0 for all "
-            "cores"
-        )
-    return number
+    if asked is not None:
+        return thread_count(given)
+    # int() reads more than a shell's user means: 1_0, +1, digits of any script.
+    digits = re.fullmatch(r"\s*0*([0-9]{1,4})\s*", str(given), re.ASCII)
+    return thread_count(int(digits[1]) if digits else -1, given, "BEZSOMA_THREADS")
 
 
 def _equations(body: Body, solver: str, threads: int, watch: Watch) -> tuple[str, str, Equations]:
