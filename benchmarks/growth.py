@@ -34,7 +34,7 @@ STAGES = {
     "writing VTU": "writing VTU",
 }
 BESIDE = ("reading", "numbering", "supports", "loads", "writing", "writing VTU")
-"""What is no work of the operator, of its preconditioner or of iterations."""
+"""Preparation and writing: the rest works with the operator, as reactions and energy do."""
 
 
 def main() -> None:

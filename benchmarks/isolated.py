@@ -59,7 +59,8 @@ def forget_peak() -> None:
 def peak() -> int:
     """The most bytes that this process held since `forget_peak`, and each child that it has now.
 
-    Children are looked for among all processes, in about a millisecond: not while time is taken.
+    That is an upper bound where there are children, which hold their most at other times and share
+    pages. They are looked for among all processes, in about a millisecond: not while time is taken.
     """
     if sys.platform == "linux":
         children = psutil.Process().children(recursive=True)
@@ -70,6 +71,10 @@ def peak() -> int:
 def own_peak(process: str = "self") -> int:
     """The same of this process alone."""
     if sys.platform == "linux":
-        lines = Path(f"/proc/{process}/status").read_text().splitlines()
-        return next(int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))
+        try:
+            lines = Path(f"/proc/{process}/status").read_text().splitlines()
+        except (FileNotFoundError, ProcessLookupError):  # a child that has just ended
+            lines = []
+        most = (int(line.split()[1]) * 1024 for line in lines if line.startswith("VmHWM:"))
+        return next(most, 0)  # none where it waits to be asked how it ended
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss  # bytes on macOS

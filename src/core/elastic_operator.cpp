@@ -250,7 +250,7 @@ void ElasticOperator<T>::forces_of_side(std::size_t c, const T *u, T *f, T *f_fo
                                         bool alone, std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t own = 3 * std::int64_t{chunk.owned}, foreign = 3 * std::ssize(chunk.foreign);
-    const std::int64_t row = sides > 1 ? 6 : 3;
+    const std::int64_t row = sides > 1 ? 3 + 3 : 3; // of u, and of f where it comes here first
     make_least(scratch, size(row * chunks_.largest) + padding + cache_line / sizeof(T));
     Batches<T> b = batches(c);
     T *next = on_line(scratch.data());
@@ -262,9 +262,9 @@ void ElasticOperator<T>::forces_of_side(std::size_t c, const T *u, T *f, T *f_fo
             *next++ = from[i * sides];
     }
     b.u_end = copy_rows(chunk.foreign, u, 3, next, sides);
-    T *const apart = next + foreign + padding;
-    b.f = sides > 1 ? apart : f + own_begin(chunk, sides);
-    T *const found = sides > 1 ? apart + own : f_foreign;
+    T *const forces = next + foreign + padding; // a gather reads past u
+    b.f = sides > 1 ? forces : f + own_begin(chunk, sides);
+    T *const found = sides > 1 ? forces + own : f_foreign;
     b.f_end = found + foreign;
     std::fill_n(found, foreign, T{});
     kernel_.apply(b);
@@ -283,7 +283,7 @@ template <class T>
 Batches<T> ElasticOperator<T>::with_area(std::size_t c, const T *u, int sides,
                                          std::vector<T> &scratch) const {
     const Chunk &chunk = chunks_.parts[c];
-    const std::int64_t row = row_of_area + (sides > 1 ? 3 : 0);
+    const std::int64_t row = row_of_area + (sides > 1 ? 3 : 0); // own numbers, brought together
     make_least(scratch, size(row * chunks_.largest) + cache_line / sizeof(T));
     Batches<T> b = batches(c);
     b.u = u + own_begin(chunk, sides);

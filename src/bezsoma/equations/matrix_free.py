@@ -81,7 +81,7 @@ class MatrixFree:
     def __matmul__(self, x: npt.ArrayLike) -> Floats:
         """K x, (c, 3) or (c, 3, s) for s right-hand sides at once, N.
 
-        Sides are worked on eight or four at a time (two where registers hold two); one or two that
+        Sides are worked on eight or four at a time (two where registers hold two); up to three that
         are left over go one by one. docs/performance.md has what they cost.
         """
         sides, shape = _rows(x, np.float64)
@@ -157,7 +157,7 @@ class MatrixFree:
 def _rows(x: npt.ArrayLike, kind: npt.DTypeLike) -> tuple[npt.NDArray[Any], tuple[int, ...]]:
     """x (c, 3) or (c, 3, s) as (c, 3, s), not copied where it is so; and the shape it had."""
     given = np.asarray(x)
-    if given.ndim < 2 or given.shape[1] != 3:
+    if given.ndim not in (2, 3) or given.shape[1] != 3:
         raise ValueError(f"x is {given.shape}; it has to be (c, 3), or (c, 3, s) for several sides")
     if given.dtype.kind == "c":  # NumPy would drop the imaginary part and only warn
         raise ValueError(

@@ -2,7 +2,8 @@
 """Meshes as NumPy archives: the plain form that tags facets, and our own, which loses nothing.
 
 Plain: `points` (v, 3), `tets` (t, 4), and optionally `facets` (f, 3) with `facet_tags` (f,) and
-`facet_tet` (f,) (the tet that has each facet), and `tet_tags` (t,). Other arrays are ignored.
+`facet_tet` (f,) (the tet that has each facet), and `tet_tags` (t,). Other arrays of numbers or
+text are ignored.
 
 Ours: `bezsoma_mesh` (the version, 1), `points`, `tets`, `region`, `regions`, and for each kind of
 place that there is, surface, edge and vertex, `KIND_names` (k,), `KIND_sizes` (k,) and `KIND_rows`,

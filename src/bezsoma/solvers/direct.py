@@ -16,8 +16,8 @@ from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.krylov import Report, length
 
 DIRECT_UP_TO = 3000
-"""Unknowns up to which the direct solver is chosen, in every form: it takes less than a tenth of a
-second, to rounding, whatever nu and the tets are. Above, iterations are far ahead."""
+"""Unknowns up to which the direct solver is chosen, in every form: it answers to rounding in a part
+of a second, whatever nu and the tets are. Above, iterations are far ahead."""
 REFINEMENTS = 10
 LARGEST = 2**31 - 1
 """SuperLU counts entries in 32 bits."""
