@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
-from time import perf_counter
+from functools import partial
 from typing import Any
 
+import peaks
 import problem
 import record
 
@@ -42,15 +43,10 @@ def main() -> None:
 
 def seconds(body: bz.Body, solver: str, repeats: int) -> float | None:
     """The least of some solves on one thread; None where it does not come to 1e-8."""
-    found = []
-    for _ in range(repeats):
-        start = perf_counter()
-        try:
-            bz.solve(body, solver=solver, threads=1)
-        except bz.NotConverged:
-            return None
-        found.append(perf_counter() - start)
-    return min(found)
+    try:
+        return peaks.least(partial(bz.solve, body, solver=solver, threads=1), repeats)
+    except bz.NotConverged:
+        return None
 
 
 def cells(row: dict[str, Any]) -> list[str]:

@@ -69,7 +69,7 @@ def peak() -> int:
 
 
 def own_peak(process: str = "self") -> int:
-    """The same of this process alone."""
+    """The same of one process alone; 0 of one that has ended."""
     if sys.platform == "linux":
         try:
             lines = Path(f"/proc/{process}/status").read_text().splitlines()

@@ -22,6 +22,7 @@ from pydantic import (
 
 import bezsoma.mechanics.materials
 from bezsoma.case.laws import LAW_NAMES, law_of
+from bezsoma.equations.threads import MOST_THREADS
 from bezsoma.errors import unknown
 from bezsoma.mechanics.polynomial import Polynomial
 from bezsoma.refinement.loop import MOST_UNKNOWNS
@@ -327,7 +328,7 @@ class Solver(Table):
     """Of the load, where the body is not linear: how many, their fractions, or "auto"."""
     iteration: Literal["newton", "modified", "secant"] = "newton"
     exactness: Annotated[int, Field(ge=0, le=40)] | None = None
-    threads: Annotated[int, Field(ge=0, le=1024, description="0: all cores")] | None = None
+    threads: Annotated[int, Field(ge=0, le=MOST_THREADS, description="0: all cores")] | None = None
 
 
 class Refine(Table):
