@@ -83,8 +83,8 @@ def test_the_summary_has_what_a_reader_asks_for(folder: Path) -> None:
     assert set(summary["reactions"]) >= {"left", "right"}
     assert summary["probes"]["middle"]["displacement"][0] == pytest.approx(0.05, rel=0.05)
     assert summary["residual"] < 1e-8
-    pulled = summary["reactions"]["right"]["force"][0] + summary["reactions"]["left"]["force"][0]
-    assert pulled == pytest.approx(0, abs=1e-12)
+    right, left = (summary["reactions"][side]["force"][0] for side in ("right", "left"))
+    assert right == pytest.approx(-left, rel=1e-8)
 
 
 def test_every_file_is_explained(folder: Path) -> None:
@@ -110,7 +110,7 @@ def test_quantities_are_taken_from_the_solution() -> None:
     value = bz.Polynomial.parse([f"{stretch}*x", 0, 0])
     mesh = bz.block(size=(2, 1, 1))
     sides = bz.Prescribed(*mesh.surfaces, value=value)
-    solution = bz.solve(bz.Body(mesh, 2, law, [sides]))
+    solution = bz.solve(bz.Body(mesh, 2, law, [sides]), solver="direct")
     measured = Measured(solution, {"p": np.array([1.0, 0.5, 0.25])})
     along, across = (law.lam + 2 * law.mu) * stretch, law.lam * stretch
     expected = {

@@ -87,7 +87,7 @@ def test_a_pressure_that_breaks_where_materials_change(nu: float) -> None:
     held = [*(bz.Fixed(p, components=c) for p, c in planes), drawn]
     mesh = stacked()
     broken = bz.Body(mesh, 2, laws, held, incompressible=True, pressure_breaks=True)
-    solution = bz.solve(broken)
+    solution = bz.solve(broken, solver="direct")
     wanted = np.array([-E / 3 * 0.1 for E in moduli.values()])[mesh.region]
     assert solution.pressure is not None
     assert np.abs(solution.pressure.of_tet - wanted[:, None]).max() < 1e-12

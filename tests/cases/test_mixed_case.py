@@ -19,7 +19,8 @@ DRAWN = ("pictures = []", 'pictures = ["front"]\nfields = ["pressure", "determin
 
 
 def test_the_pressure_is_written_pictured_and_read_back(tmp_path: Path) -> None:
-    expect = '[[expect]]\nof = "middle.pressure"\nbetween = [-1, 0]\nsource = "drawn"\n\n[output]'
+    expect = '[[expect]]\nof = "middle.pressure"\nbetween = [-1, 0]\nsource = "drawn"\n\n'
+    expect += '[solver]\nmethod = "direct"\n\n[output]'
     path = case_file(tmp_path, WATER, MIXED, DRAWN, ("[output]", expect))
     results = bz.run_case(path, tmp_path / "out")
     again = bz.read_results(tmp_path / "out")

@@ -23,6 +23,7 @@ from bezsoma.mechanics import (
     Fixed,
     LinearElastic,
     Moved,
+    NeoHooke,
     PointForce,
     Prescribed,
     Pressure,
@@ -30,7 +31,7 @@ from bezsoma.mechanics import (
 )
 from bezsoma.mesh import TetMesh, block
 from bezsoma.mesh.solids import ball, shell
-from bezsoma.solvers import Solution, multigrid, solve
+from bezsoma.solvers import Solution, solve
 from tolerances import HARD
 
 TISSUE = LinearElastic(0.015, 0.45)
@@ -282,9 +283,8 @@ def test_what_cannot_converge_says_so_with_its_history() -> None:
 
 
 def test_too_few_iterations_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    plain = multigrid.multigrid
     there = sys.modules["bezsoma.solvers.solve"]  # the function of that name hides the module
-    monkeypatch.setattr(there, "multigrid", lambda *given: plain(*given, most=7))
+    monkeypatch.setattr(there, "MOST_ITERATIONS", 7)
     with pytest.raises(NotConverged, match="not done after 7 iterations") as caught:
         solve(Body(block(cells=3), 3, TISSUE, ENDS), solver="multigrid")
     assert len(caught.value.history) == 8
@@ -304,3 +304,22 @@ def test_nothing_of_the_solve_depends_on_what_was_solved_before() -> None:
     again = solve(slivers(2), solver="multigrid")
     assert (first.displacement.controls == again.displacement.controls).all()
     assert first.history == again.history
+
+
+@pytest.mark.parametrize(
+    "law", [LinearElastic(1.0, 0.3), NeoHooke(1.0, 0.3)], ids=["linear", "finite"]
+)
+@pytest.mark.parametrize("mixed", [False, True])
+def test_auto_factors_thin_plates_where_iterations_stand_still(law: Any, mixed: bool) -> None:
+    """1 : 50, and few tets; the largest part of nothing is how little iterations came down."""
+    plate = block(size=(1, 1, 0.02), cells=(3, 3, 1))
+    load = [BodyForce((0, 0, 1e-6))]
+    body = Body(plate, 2, law, [Fixed("left")], load, incompressible=mixed)
+    chosen, factored = solve(body, rtol=1e-7), solve(body, solver="direct", rtol=1e-7)
+    told = [event for each in chosen.path for event in each.events]
+    if law.linear and mixed:
+        assert chosen.method.startswith("direct (SuperLU") and "iterations left" in chosen.method
+    if not law.linear:
+        assert any("factored, since GMRES" in event for event in told)
+    away = chosen.displacement.controls - factored.displacement.controls
+    assert np.abs(away).max() < 1e-4 * np.abs(factored.displacement.controls).max()

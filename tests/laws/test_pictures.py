@@ -15,10 +15,10 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
+from bezsoma import face_picture, picture
 from bezsoma.bernstein import domain_points
 from bezsoma.errors import InputError, MissingExtra
 from bezsoma.mesh import BrokenField, ControlNet, Field, TetMesh, ball, block
-from bezsoma.view import face_picture, picture
 from bezsoma.view.camera import VIEWS, Camera, axes, fitted
 from bezsoma.view.layout import Layout
 from bezsoma.view.rays import Scene

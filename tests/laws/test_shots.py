@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from bezsoma import Shot, convergence_picture, film, picture, side_by_side
 from bezsoma.errors import InputError, MissingExtra
 from bezsoma.mesh import ControlNet, Field, TetMesh, block
 from bezsoma.mesh.solids import ball
-from bezsoma.view import Shot, convergence_picture, film, movie, picture, side_by_side, window
+from bezsoma.view import movie, window
 from bezsoma.view.camera import Camera, around, axes, fitted, turned
 from bezsoma.view.film import angles, shares
 from bezsoma.view.overlays import Screen, control_net, net_points, wireframe

@@ -35,6 +35,7 @@ from bezsoma.mechanics import (
 )
 from bezsoma.mesh import TetMesh, block
 from bezsoma.solvers import Solution, solve
+from bezsoma.solvers.direct import iterations_before
 from tolerances import INVARIANCE, ITERATIVE, ROUNDING, patch
 
 SIDES = ("left", "right", "front", "back", "bottom", "top")
@@ -193,7 +194,8 @@ def test_volume_change_is_the_flux_through_the_boundary() -> None:
 
 def test_a_carried_body_stores_no_energy() -> None:
     turn = Moved("bottom", translation=(5, -3, 2), axis=(1, 2, 3), angle=1e-9, about=(9, 9, 9))
-    solution = solve(Body(block(cells=2, irregular=0.2), 3, LinearElastic(1.0, 0.45), [turn]))
+    body = Body(block(cells=2, irregular=0.2), 3, LinearElastic(1.0, 0.45), [turn])
+    solution = solve(body, solver="direct")
     assert solution.energy < 1e-25
     assert np.abs(solution.stress.controls).max() < ROUNDING * 10
 
@@ -323,18 +325,45 @@ def test_no_load_gives_exactly_zero() -> None:
         assert solution.history == () and solution.energy == 0
 
 
-def test_auto_takes_the_direct_solver_for_few_unknowns_and_says_so() -> None:
-    small = solve(pulled(1))
-    assert small.method.startswith("direct (SuperLU") and "not more than 3000" in small.method
-    large = Body(
-        block(cells=12), 1, LinearElastic(1.0, 0.3), [Fixed("top")], [BodyForce((0, 0, 1))]
-    )
-    chosen = solve(large)
+def hanging(cells: int, nu: float = 0.3, degree: int = 1) -> Body:
+    law = LinearElastic(1.0, nu)
+    return Body(block(cells=cells), degree, law, [Fixed("top")], [BodyForce((0, 0, 1))])
+
+
+@pytest.mark.parametrize("cells", [1, 12])
+def test_auto_iterates_and_says_so(cells: int) -> None:
+    chosen = solve(hanging(cells))
     assert chosen.method.startswith("conjugate gradients with entity blocks and multigrid")
-    assert "more than 3000" in chosen.method and 0 < chosen.residual <= 1e-8
-    insisted = solve(large, solver="cg", rtol=1e-3)
-    assert insisted.method.endswith("incomplete Cholesky, as asked for")
-    assert 1e-8 < insisted.residual <= 1e-3
+    assert chosen.method.endswith("the quickest way that comes through")
+    assert 0 < chosen.residual <= 1e-8
+    insisted = solve(hanging(cells), solver="cg", rtol=1e-3)
+    assert "incomplete Cholesky" in insisted.method and insisted.method.endswith("as asked for")
+    assert insisted.residual <= 1e-3
+
+
+@pytest.mark.parametrize("start", [False, True])
+@pytest.mark.parametrize(
+    ("hard", "creeps"), [(hanging(3, 0.49999, 2), True), (hanging(4, 1 / 2 - 1e-7), False)]
+)
+def test_auto_factors_a_small_body_that_iterations_do_not_solve(
+    hard: Body, creeps: bool, start: bool
+) -> None:
+    told: list[str] = []
+    begin = solve(hanging(4)) if start else None
+    chosen = solve(hard, start=begin, progress=lambda stage, done, note: told.append(note))
+    factored = solve(hard, solver="direct")
+    assert chosen.method.startswith("direct (SuperLU, scaled and refined), since ")
+    all_of_them = f"since {iterations_before(chosen.free, hard.degree)} iterations left"
+    assert (all_of_them in chosen.method) == creeps
+    assert chosen.method.endswith(f"of the residual and {chosen.free} unknowns are few")
+    assert chosen.displacement.controls.tobytes() == factored.displacement.controls.tobytes()
+    assert chosen.history == factored.history and chosen.timings.keys() == factored.timings.keys()
+    assert any("multigrid" in note for note in told) and any("direct" in note for note in told)
+
+
+def test_auto_factors_no_large_body() -> None:
+    with pytest.raises(NotConverged, match="conjugate gradients"):
+        solve(hanging(12), rtol=1e-30)
 
 
 def test_progress_tells_of_every_stage() -> None:

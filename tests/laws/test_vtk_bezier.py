@@ -15,9 +15,10 @@ import pytest
 from bezsoma import bernstein
 from bezsoma.errors import InputError, MissingExtra
 from bezsoma.mesh import ControlNet, Field, TetMesh, block
-from bezsoma.view import write_surface_vtu, write_vtkhdf, write_vtu
 from bezsoma.view.grid import written_form
 from bezsoma.view.lagrange import vtk_order
+from bezsoma.view.vtk import write_surface_vtu, write_vtu
+from bezsoma.view.vtkhdf import write_vtkhdf
 
 RNG = np.random.default_rng(3)
 WRITERS = {"vtu": write_vtu, "vtkhdf": write_vtkhdf}

@@ -420,6 +420,27 @@ PYTHON = (
         MULTIGRID,
     ),
     Mutant(
+        "a small body that is not factored where iterations do not come through",
+        f"{SOLVERS}/direct.py",
+        'solver == "auto" and free <= DIRECT_UP_TO',
+        'solver == "auto" and free < 0',
+        ("tests/laws/test_solve.py::test_auto_factors_a_small_body_that_iterations_do_not_solve",),
+    ),
+    Mutant(
+        "a small body that gets as many iterations as a large one before it is factored",
+        f"{SOLVERS}/solve.py",
+        "iterations_before(equations.free, body.degree) if small else MOST_ITERATIONS",
+        "MOST_ITERATIONS",
+        ("tests/laws/test_solve.py::test_auto_factors_a_small_body_that_iterations_do_not_solve",),
+    ),
+    Mutant(
+        "a tangent of a small body that is not factored where iterations do not come through",
+        f"{SOLVERS}/tangents.py",
+        'event = f"factored, since {failure}"',
+        "raise",
+        ("tests/faults/test_hard_problems.py",),
+    ),
+    Mutant(
         "pages of files in a container counted as taken",
         f"{SOLVERS}/memory.py",
         'most - taken + _counted(folder / "memory.stat", dropped)',

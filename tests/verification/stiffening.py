@@ -91,7 +91,9 @@ def unstiffened() -> Iterator[Value]:
     """A = 0 is linear elasticity, and so is a small load."""
     load = [bz.Traction("top", value=(0.01, 0, 0.02))]
     both = [
-        bz.solve(bz.Body(block(cells=2), 2, law, [bz.Fixed("bottom")], load)).displacement.controls
+        bz.solve(
+            bz.Body(block(cells=2), 2, law, [bz.Fixed("bottom")], load), solver="direct"
+        ).displacement.controls
         for law in (bz.LinearElastic(E, NU), bz.Stiffening(E, NU, 0.0))
     ]
     away = float(np.abs(both[0] - both[1]).max() / np.abs(both[0]).max())

@@ -15,7 +15,6 @@ import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-import meshio
 import numpy as np
 
 from bezsoma.errors import InputError, MeshError
@@ -111,13 +110,13 @@ def _write(part: Path, suffix: str, mesh: TetMesh) -> None:
     elif suffix == ".inp":
         with part.open("w", encoding="utf-8") as deck:
             write_abaqus(deck, mesh)
-    elif suffix in (".vtu", ".vtk"):
-        with _quiet():
-            meshio.write(part, meshio.Mesh(**masked(mesh)), file_format=FORMATS[suffix])
     else:
+        import meshio  # here, since our own files need not wait for it
+
+        given = masked(mesh) if suffix in (".vtu", ".vtk") else grouped(mesh, suffix)
+        kind = {".msh": "gmsh22", ".mesh": "medit"}.get(suffix, FORMATS[suffix])
         with _quiet():
-            kind = "gmsh22" if suffix == ".msh" else "medit"
-            meshio.write(part, meshio.Mesh(**grouped(mesh, suffix)), file_format=kind)
+            meshio.write(part, meshio.Mesh(**given), file_format=kind)
 
 
 def _existing(path: str | os.PathLike[str]) -> Path:
@@ -162,6 +161,8 @@ def _listing(place: Path, tags: str | None, wanted: bool) -> Listing:
         if suffix == ".inp":
             with place.open(encoding="utf-8", errors="replace") as deck:
                 return read_abaqus(deck)
+        import meshio
+
         with _quiet(said):
             foreign = meshio.read(place, file_format=FORMATS[suffix])
     except InputError:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -11,16 +12,51 @@ from scipy.sparse import csc_array, diags_array
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.assembled import BlockMatrix
 from bezsoma.equations.displacement import Equations
-from bezsoma.errors import InputError
+from bezsoma.errors import InputError, NotConverged
 from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.krylov import Report, length
 
 DIRECT_UP_TO = 3000
-"""Unknowns up to which the direct solver is chosen, in every form: it answers to rounding in a part
-of a second, whatever nu and the tets are. Above, iterations are far ahead."""
+"""Unknowns of a body that is factored where iterations do not come through, in every form: in a
+part of a second, whatever nu and the tets are. Iterations that do are quicker at any size."""
 REFINEMENTS = 10
 LARGEST = 2**31 - 1
 """SuperLU counts entries in 32 bits."""
+
+
+def may_be_factored(solver: str, free: int) -> bool:
+    """Whether a body of so many unknowns is factored where iterations do not come through.
+
+    >>> may_be_factored("auto", 3000), may_be_factored("auto", 3001)
+    (True, False)
+    """
+    return solver == "auto" and free <= DIRECT_UP_TO
+
+
+def iterations_before(free: int, degree: int) -> int:
+    """How many iterations a small body gets before it is factored: about what the factors cost.
+
+    So little more than twice the least is ever spent, as by who rents skis until he has paid their
+    price. Factors of n unknowns cost about sqrt(n) as much as an iteration, more at high degree:
+    the numbers are from benchmarks/choice.py.
+
+    >>> iterations_before(2500, 2)
+    1000
+    """
+    return int(10 * degree * math.sqrt(free))
+
+
+def why_iterated(solver: str) -> str:
+    """Why iterations were taken, for the summary."""
+    return "the quickest way that comes through" if solver == "auto" else "as asked for"
+
+
+def why_factored(stopped: NotConverged, free: int) -> str:
+    """Why they were given up, for the summary."""
+    return (
+        f"since {len(stopped.history) - 1} iterations left {stopped.history[-1]:.1e} of the "
+        f"residual and {free} unknowns are few"
+    )
 
 
 def direct(

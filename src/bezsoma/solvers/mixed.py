@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from bezsoma.arrays import Floats, frozen
@@ -13,6 +15,7 @@ from bezsoma.equations.locked import refuse_undetermined
 from bezsoma.equations.mixed import (
     MixedEquations,
     MixedMatrix,
+    MixedOperator,
     mixed_matrix,
     mixed_moduli,
 )
@@ -26,9 +29,15 @@ from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.mesh.torn import pressure_net
-from bezsoma.solvers.direct import DIRECT_UP_TO
+from bezsoma.solvers.direct import (
+    iterations_before,
+    may_be_factored,
+    why_factored,
+    why_iterated,
+)
 from bezsoma.solvers.krylov import Report
 from bezsoma.solvers.memory import refuse_what_does_not_fit
+from bezsoma.solvers.saddle import MOST_ITERATIONS, saddle
 from bezsoma.solvers.saddle_direct import direct_saddle
 from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.start import State, first_displacement, first_pressure
@@ -45,9 +54,20 @@ def mixed_solution(
     body: Body, solver: str, rtol: float, threads: int, watch: Watch, start: State | None = None
 ) -> Solution:
     """Displacement and pressure of a body that has one: see `solve`."""
-    chosen, why, equations, locked = _equations(body, solver, threads, watch)
+    chosen = "saddle" if solver == "auto" else solver
+    equations, locked = _equations(body, chosen, threads, watch)
     begin = None if start is None or chosen == "direct" else _begin(start, equations)
-    u, p, method, history = _solved(equations, begin, chosen, why, rtol, watch)
+    small = may_be_factored(solver, equations.free)
+    most = iterations_before(equations.free, body.degree) if small else MOST_ITERATIONS
+    try:
+        found = _solved(equations, begin, chosen, why_iterated(solver), rtol, watch, most)
+    except NotConverged as stopped:
+        if not small:
+            raise
+        why = why_factored(stopped, equations.free)
+        K = _operator(body, equations.net, equations.pressure_net, "direct", threads, watch)
+        found = _solved(replace(equations, operator=K), None, "direct", why, rtol, watch)
+    u, p, method, history = found
     with watch.stage("reactions", "and energy"), np.errstate(over="ignore", invalid="ignore"):
         displacement = Field(equations.net, frozen(u))
         pressure = _pressure(body, equations.pressure_net, frozen(p))
@@ -85,33 +105,34 @@ def _level(modes: int) -> str:
     )
 
 
-def _equations(
-    body: Body, solver: str, threads: int, watch: Watch
-) -> tuple[str, str, MixedEquations, int]:
+def _equations(body: Body, chosen: str, threads: int, watch: Watch) -> tuple[MixedEquations, int]:
     assert body.pressure_degree is not None
     with watch.stage("numbering", f"{len(body.mesh.tets)} tets, degree {body.degree}"):
-        _solver_checked(solver)
-        refuse_what_does_not_fit(body, solver)
+        _solver_checked(chosen)
+        refuse_what_does_not_fit(body, chosen)
         net = ControlNet(body.mesh, body.degree)
         pressures = pressure_net(body.mesh, body.pressure_degree, body.pressure_breaks)
-        moduli = mixed_moduli(body)
-        soft = moduli[body.mesh.region, 1] > 0
+        soft = mixed_moduli(body)[body.mesh.region, 1] > 0
     with watch.stage("supports", f"{3 * net.count} displacements, {pressures.count} pressures"):
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
         modes = undetermined(net, pressures, known.mask, soft)
         locked = refuse_undetermined(net, pressures, known.mask, soft, modes)
         refuse_flux(net, pressures, modes, soft, known.values)
-    free = int(known.mask.size - known.mask.sum()) + pressures.count
-    chosen, why = _choice(free, solver)
     with watch.stage("loads", f"{len(body.loads)} given"):
         loads = forces(body, net)
-    with watch.stage("stiffness", f"{free} unknowns"):
-        given = (net, pressures, moduli, threads)
-        operator = mixed_matrix(*given) if chosen == "direct" else MixedFree(*given)
+    operator = _operator(body, net, pressures, chosen, threads, watch)
     supports = (known.mask, known.values, known.of_support)
-    equations = MixedEquations(net, pressures, operator, loads, *supports, modes)
-    return chosen, why, equations, locked
+    return MixedEquations(net, pressures, operator, loads, *supports, modes), locked
+
+
+def _operator(
+    body: Body, net: ControlNet, pressures: ControlNet, chosen: str, threads: int, watch: Watch
+) -> MixedOperator:
+    """The matrices for "direct", what they do for "saddle"."""
+    with watch.stage("stiffness", f"{3 * net.count} displacements, {pressures.count} pressures"):
+        given = (net, pressures, mixed_moduli(body), threads)
+        return mixed_matrix(*given) if chosen == "direct" else MixedFree(*given)
 
 
 def _begin(start: State, equations: MixedEquations) -> tuple[Floats, Floats]:
@@ -135,6 +156,7 @@ def _solved(
     why: str,
     rtol: float,
     watch: Watch,
+    most: int = MOST_ITERATIONS,
 ) -> tuple[Floats, Floats, str, list[float]]:
     with watch.stage("solving", f"{chosen}: {why}"):
         zero = np.zeros(equations.pressure_net.count)
@@ -152,7 +174,8 @@ def _solved(
             if not history[-1] <= rtol:
                 raise NotConverged(_stopped(history[-1], rtol), history)
             return u, p, f"direct (SuperLU of both equations, scaled and refined), {why}", history
-        return _iterated(equations, f, g, begin or (equations.given, zero), why, rtol, report)
+        begin = begin or (equations.given, zero)
+        return _iterated(equations, f, g, begin, why, rtol, report, most)
 
 
 def _iterated(
@@ -163,10 +186,9 @@ def _iterated(
     why: str,
     rtol: float,
     report: Report,
+    most: int,
 ) -> tuple[Floats, Floats, str, list[float]]:
     """From a first u and p: what is left there is solved for, and judged by f and g as ever."""
-    from bezsoma.solvers.saddle import saddle
-
     assert isinstance(equations.operator, MixedFree)
     held, modes = equations.held, equations.modes
     left_f, left_g = equations.residuals(*begin)
@@ -180,6 +202,7 @@ def _iterated(
         modes,
         rtol,
         report,
+        most,
         against=(f / size, g / size),
     )
     u = u * size + begin[0]
@@ -229,12 +252,3 @@ def _solver_checked(solver: str) -> None:
             f"solver = {solver!r} solves for a displacement alone, and this body has a pressure of "
             "its own; take 'direct' or 'saddle', or 'auto', which chooses between them"
         )
-
-
-def _choice(free: int, solver: str) -> tuple[str, str]:
-    """The solver for so many unknowns, and why."""
-    if solver != "auto":
-        return solver, "as asked for"
-    if free <= DIRECT_UP_TO:
-        return "direct", f"since {free} unknowns are not more than {DIRECT_UP_TO}"
-    return "saddle", f"since {free} unknowns are more than {DIRECT_UP_TO}"

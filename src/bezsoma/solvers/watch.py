@@ -28,11 +28,13 @@ class Watch:
 
     @contextmanager
     def stage(self, name: str, note: str) -> Iterator[None]:
-        """Time what is done inside, after telling of it."""
+        """Time what is done inside, on top of what the stage took before, after telling of it."""
         start = perf_counter()
         self.tell(name, None, note)
-        yield
-        self.timings[name] = perf_counter() - start
+        try:
+            yield
+        finally:
+            self.timings[name] = self.timings.get(name, 0.0) + perf_counter() - start
 
     def tell(self, name: str, fraction: float | None, note: str) -> None:
         """Tell of a stage, how much of it is done and a note, whoever listens."""
