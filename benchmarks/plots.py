@@ -36,17 +36,23 @@ def operator(found: Run, path: str) -> None:
     left.set(xlabel="degree", ylabel="million unknowns a second, one right-hand side", ylim=0)
     left.legend(frameon=False, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1), fontsize=8)
     rows = [r for r in one if r["instructions"] == names[0] and r["width"] == 8]
-    for part, label, colour in (
-        ("part", "of the roof", "#000000"),
-        ("part_memory", "of the bandwidth", "#0072b2"),
-        ("part_flops", "of the flops", "#d55e00"),
-        ("part_issue", "of the instructions", "#cc79a7"),
+    for part, label, colour, width in (
+        (
+            "part",
+            "of the roof",
+            "#cccccc",
+            7,
+        ),  # the larger of the next two: wide, so that both show
+        ("part_memory", "of the bandwidth", "#0072b2", 1.5),
+        ("part_flops", "of the flops", "#d55e00", 1.5),
+        ("part_issue", "of the instructions", "#cc79a7", 1.5),
     ):
         right.plot(
             [r["degree"] for r in rows],
             [100 * r[part] for r in rows],
             "o-",
             ms=4,
+            lw=width,
             color=colour,
             label=label,
         )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How long a solve takes, by degree and method: ./dev bench.
 
-./dev bench peers, and likewise roofline, growth, mixed and nonlinear, run the longer
+./dev bench peers, and likewise roofline, growth, choice, mixed and nonlinear, run the longer
 measurements; see docs/performance.md.
 """
 
@@ -18,7 +18,7 @@ import problem
 
 import bezsoma as bz
 
-LONGER = ("peers", "roofline", "growth", "mixed", "nonlinear")
+LONGER = ("peers", "roofline", "growth", "choice", "mixed", "nonlinear")
 
 
 def row(degree: int, solver: str, unknowns: int, threads: int) -> str:

@@ -23,7 +23,6 @@ from bezsoma.mechanics import (
     Fixed,
     LinearElastic,
     Moved,
-    NeoHooke,
     PointForce,
     Prescribed,
     Pressure,
@@ -306,20 +305,14 @@ def test_nothing_of_the_solve_depends_on_what_was_solved_before() -> None:
     assert first.history == again.history
 
 
-@pytest.mark.parametrize(
-    "law", [LinearElastic(1.0, 0.3), NeoHooke(1.0, 0.3)], ids=["linear", "finite"]
-)
 @pytest.mark.parametrize("mixed", [False, True])
-def test_auto_factors_thin_plates_where_iterations_stand_still(law: Any, mixed: bool) -> None:
-    """1 : 50, and few tets; the largest part of nothing is how little iterations came down."""
+def test_auto_factors_thin_plates_where_iterations_stand_still(mixed: bool) -> None:
+    """1 : 50, and few tets."""
     plate = block(size=(1, 1, 0.02), cells=(3, 3, 1))
     load = [BodyForce((0, 0, 1e-6))]
-    body = Body(plate, 2, law, [Fixed("left")], load, incompressible=mixed)
+    body = Body(plate, 2, LinearElastic(1.0, 0.3), [Fixed("left")], load, incompressible=mixed)
     chosen, factored = solve(body, rtol=1e-7), solve(body, solver="direct", rtol=1e-7)
-    told = [event for each in chosen.path for event in each.events]
-    if law.linear and mixed:
-        assert chosen.method.startswith("direct (SuperLU") and "iterations left" in chosen.method
-    if not law.linear:
-        assert any("factored, since GMRES" in event for event in told)
-    away = chosen.displacement.controls - factored.displacement.controls
-    assert np.abs(away).max() < 1e-4 * np.abs(factored.displacement.controls).max()
+    assert chosen.method.startswith("direct (SuperLU") and "iterations left" in chosen.method
+    assert chosen.displacement.controls.tobytes() == factored.displacement.controls.tobytes()
+    with pytest.raises(NotConverged, match="slow"):
+        solve(body, solver="saddle" if mixed else "multigrid", rtol=1e-16)

@@ -221,9 +221,6 @@ def test_tangent_without_numbers_is_no_lost_ellipticity(more: Any) -> None:
     """Its acoustic tensors have no eigenvalues."""
     law = bz.Guccione(1e200, 1e200, 1.0, 1.0, 5.0, (1, 0, 0))
     with pytest.raises(bz.NotConverged, match="range of numbers") as failure:
-        bz.solve(body(law, **more), solver="direct")
-    assert "ellipticity" not in str(failure.value)
-    with pytest.raises(bz.NotConverged) as failure:
         bz.solve(body(law, **more))
     assert "ellipticity" not in str(failure.value)
 
@@ -430,8 +427,7 @@ def test_user_law_that_answers_with_another_shape_at_large_strain() -> None:
 def test_tissue_that_folds_between_the_points_of_the_quadrature_is_told() -> None:
     """One cell whose top is pushed far below its bottom: all points asked have J > 0."""
     supports = [bz.Fixed("bottom"), bz.Moved("top", translation=(0, 0, -1.5))]
-    pushed = bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports)
-    folded = bz.solve(pushed, solver="direct")
+    folded = bz.solve(bz.Body(bz.block(cells=1), 2, bz.NeoHooke(1.0, 0.3), supports))
     (said,) = folded.path[-1].events
     assert (
         "turned inside out at corners of 6 of 6 tets (100 % of the volume)" in said

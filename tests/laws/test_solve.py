@@ -35,7 +35,6 @@ from bezsoma.mechanics import (
 )
 from bezsoma.mesh import TetMesh, block
 from bezsoma.solvers import Solution, solve
-from bezsoma.solvers.direct import iterations_before
 from tolerances import INVARIANCE, ITERATIVE, ROUNDING, patch
 
 SIDES = ("left", "right", "front", "back", "bottom", "top")
@@ -333,8 +332,8 @@ def hanging(cells: int, nu: float = 0.3, degree: int = 1) -> Body:
 @pytest.mark.parametrize("cells", [1, 12])
 def test_auto_iterates_and_says_so(cells: int) -> None:
     chosen = solve(hanging(cells))
-    assert chosen.method.startswith("conjugate gradients with entity blocks and multigrid")
-    assert chosen.method.endswith("the quickest way that comes through")
+    assert chosen.method.startswith("conjugate gradients with multigrid")
+    assert chosen.method.endswith("quickest where it comes through")
     assert 0 < chosen.residual <= 1e-8
     insisted = solve(hanging(cells), solver="cg", rtol=1e-3)
     assert "incomplete Cholesky" in insisted.method and insisted.method.endswith("as asked for")
@@ -353,8 +352,7 @@ def test_auto_factors_a_small_body_that_iterations_do_not_solve(
     chosen = solve(hard, start=begin, progress=lambda stage, done, note: told.append(note))
     factored = solve(hard, solver="direct")
     assert chosen.method.startswith("direct (SuperLU, scaled and refined), since ")
-    all_of_them = f"since {iterations_before(chosen.free, hard.degree)} iterations left"
-    assert (all_of_them in chosen.method) == creeps
+    assert ("since 296 iterations left" in chosen.method) == creeps
     assert chosen.method.endswith(f"of the residual and {chosen.free} unknowns are few")
     assert chosen.displacement.controls.tobytes() == factored.displacement.controls.tobytes()
     assert chosen.history == factored.history and chosen.timings.keys() == factored.timings.keys()

@@ -324,7 +324,7 @@ def _nonlinear(solution: Solution, body: Body, threads: int) -> Raised:
     net = ControlNet(body.mesh, body.degree)
     known = prescribed(body, net)
     chosen = choice(int(known.mask.size - known.mask.sum()), "auto")
-    refuse_what_does_not_fit(body, "auto", linear=False)
+    refuse_what_does_not_fit(body, chosen, linear=False)
     equations = nonlinear_equations(body, net, known)
     exactness = Loading().exactness_for(body.degree)
     form = form_of(body, equations, exactness, chosen, "newton", threads)

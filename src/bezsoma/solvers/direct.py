@@ -12,51 +12,43 @@ from scipy.sparse import csc_array, diags_array
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.assembled import BlockMatrix
 from bezsoma.equations.displacement import Equations
-from bezsoma.errors import InputError, NotConverged
+from bezsoma.errors import InputError, NotConverged, counted
 from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.krylov import Report, length
 
 DIRECT_UP_TO = 3000
-"""Unknowns of a body that is factored where iterations do not come through, in every form: in a
-part of a second, whatever nu and the tets are. Iterations that do are quicker at any size."""
+"""Unknowns of a small body, one that is factored in a part of a second, whatever nu and the tets
+are: a linear one where iterations do not come through soon, one of other laws always."""
 REFINEMENTS = 10
 LARGEST = 2**31 - 1
 """SuperLU counts entries in 32 bits."""
 
 
-def may_be_factored(solver: str, free: int) -> bool:
-    """Whether a body of so many unknowns is factored where iterations do not come through.
+def before_factoring(solver: str, free: int, degree: int) -> int | None:
+    """How many iterations a linear body gets before it is factored; None where it never is.
 
-    >>> may_be_factored("auto", 3000), may_be_factored("auto", 3001)
-    (True, False)
+    Factors of a small body cost about 10 n sqrt(unknowns) iterations at degree n, and it gets half
+    as many (docs/theory/solvers.md). What comes through by then is right to 3e-7 of the largest
+    displacement at rtol = 1e-8; what takes more is badly conditioned, and has more digits from its
+    factors.
+
+    >>> before_factoring("auto", 2500, 2), before_factoring("auto", 3001, 2)
+    (500, None)
     """
-    return solver == "auto" and free <= DIRECT_UP_TO
-
-
-def iterations_before(free: int, degree: int) -> int:
-    """How many iterations a small body gets before it is factored: about what the factors cost.
-
-    So little more than twice the least is ever spent, as by who rents skis until he has paid their
-    price. Factors of n unknowns cost about sqrt(n) as much as an iteration, more at high degree:
-    the numbers are from benchmarks/choice.py.
-
-    >>> iterations_before(2500, 2)
-    1000
-    """
-    return int(10 * degree * math.sqrt(free))
+    small = solver == "auto" and free <= DIRECT_UP_TO
+    return int(5 * degree * math.sqrt(free)) if small else None
 
 
 def why_iterated(solver: str) -> str:
     """Why iterations were taken, for the summary."""
-    return "the quickest way that comes through" if solver == "auto" else "as asked for"
+    return "quickest where it comes through" if solver == "auto" else "as asked for"
 
 
 def why_factored(stopped: NotConverged, free: int) -> str:
     """Why they were given up, for the summary."""
-    return (
-        f"since {len(stopped.history) - 1} iterations left {stopped.history[-1]:.1e} of the "
-        f"residual and {free} unknowns are few"
-    )
+    done = counted(len(stopped.history) - 1, "iteration")
+    left = f"{stopped.history[-1]:.1e} of the residual and {free} unknowns are few"
+    return f"since {done} left {left}"
 
 
 def direct(

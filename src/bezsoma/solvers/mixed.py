@@ -30,8 +30,7 @@ from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.mesh.torn import pressure_net
 from bezsoma.solvers.direct import (
-    iterations_before,
-    may_be_factored,
+    before_factoring,
     why_factored,
     why_iterated,
 )
@@ -57,12 +56,13 @@ def mixed_solution(
     chosen = "saddle" if solver == "auto" else solver
     equations, locked = _equations(body, chosen, threads, watch)
     begin = None if start is None or chosen == "direct" else _begin(start, equations)
-    small = may_be_factored(solver, equations.free)
-    most = iterations_before(equations.free, body.degree) if small else MOST_ITERATIONS
+    few = before_factoring(solver, equations.free, body.degree)
     try:
-        found = _solved(equations, begin, chosen, why_iterated(solver), rtol, watch, most)
+        found = _solved(
+            equations, begin, chosen, why_iterated(solver), rtol, watch, few or MOST_ITERATIONS
+        )
     except NotConverged as stopped:
-        if not small:
+        if few is None:
             raise
         why = why_factored(stopped, equations.free)
         K = _operator(body, equations.net, equations.pressure_net, "direct", threads, watch)
@@ -235,12 +235,12 @@ def advice(body: Body) -> str:
     worst = max(nus, default=0.0)
     if body.degree == 1 and worst >= LOCKED_FROM:
         return (
-            f"nu = {worst:g} at degree 1: linear tets lock, and the answer is much too stiff; take "
+            f"nu = {worst} at degree 1: linear tets lock, and the answer is much too stiff; take "
             "degree 2 or more, best with a pressure of its own, Body(..., incompressible=True)"
         )
     if body.degree in CHEAPER_FROM and worst >= CHEAPER_FROM[body.degree]:
         return (
-            f"nu = {worst:g} at degree {body.degree}: from nu = {CHEAPER_FROM[body.degree]:g} on "
+            f"nu = {worst} at degree {body.degree}: from nu = {CHEAPER_FROM[body.degree]:g} on "
             "the mixed form takes less time for the same error; Body(..., incompressible=True)"
         )
     return ""

@@ -121,7 +121,7 @@ def iterated(
         f"conjugate gradients {how} after {len(history) - 1} iterations, at {residual:.3g} of the "
         f"residual at zero free displacement; rtol = {rtol:g} was asked for. Very flat tets, thin "
         "shells, regions of very unequal stiffness or nu close to 1/2 slow them down: look at the "
-        "mesh (bezsoma mesh info), take a larger rtol, a lower degree, or solver='direct' on a "
-        "small problem",
+        "mesh (bezsoma mesh info), take a larger rtol, a lower degree, incompressible=True close "
+        "to 1/2, or solver='direct' on a small problem",
         history,
     )

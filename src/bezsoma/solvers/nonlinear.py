@@ -28,7 +28,7 @@ from bezsoma.mechanics.path import body_at
 from bezsoma.mesh.broken_field import BrokenField
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
-from bezsoma.solvers.direct import may_be_factored
+from bezsoma.solvers.direct import DIRECT_UP_TO
 from bezsoma.solvers.factors import Waiting
 from bezsoma.solvers.kept import Kept, Precondition
 from bezsoma.solvers.load_steps import Reached, loaded, steps_checked
@@ -46,7 +46,7 @@ from bezsoma.solvers.newton import (
 from bezsoma.solvers.nonlinear_mixed import applied, factored_mixed, level, mixed_problem
 from bezsoma.solvers.solution import Solution, resultants
 from bezsoma.solvers.start import State, first_displacement
-from bezsoma.solvers.tangents import applied_tangents, either, factored_tangents
+from bezsoma.solvers.tangents import applied_tangents, factored_tangents
 from bezsoma.solvers.watch import Watch
 
 METHODS = {"newton": (True, 40), "modified": (False, 200), "secant": (True, 500)}
@@ -179,10 +179,10 @@ def _plain(
 ) -> Form:
     laws = _laws(body)
     internal = internal_forces(equations.net, laws, exactness, threads)
-    seldom = chosen != "direct" and method != "secant"  # then it is asked for the energy alone
+    seldom = chosen == "multigrid" and method != "secant"  # then it is asked for the energy alone
     pointwise = Pointwise(equations.net, laws, exactness, once=seldom)
     system = _system(equations, internal, pointwise, chosen, method, threads, waiting)
-    if chosen != "direct" and body.degree > 1:
+    if chosen == "multigrid" and body.degree > 1:
         system = replace(system, near=lambda t: _of_degree_one(equations, t, method, threads))
     return Form(
         system,
@@ -228,10 +228,7 @@ def _mixed(
     waiting: Waiting | None,
 ) -> Form:
     problem = mixed_problem(body, equations, exactness, threads)
-    tangent = factored_mixed(problem, waiting)
-    if chosen != "direct":
-        iterated = applied(problem, threads)
-        tangent = either(iterated, tangent) if chosen == "either" else iterated
+    tangent = factored_mixed(problem, waiting) if chosen == "direct" else applied(problem, threads)
 
     def pressure(x: Floats) -> Field | BrokenField:
         p, net = frozen(level(problem, problem.parted(x)[1])), problem.internal.pressure_net
@@ -257,7 +254,6 @@ _SOLVES = {
     "direct": "tangents factored (SuperLU)",
     "multigrid": "tangents applied, preconditioned by the linear law's blocks and multigrid",
 }
-_SOLVES["either"] = _SOLVES["multigrid"]  # the path has where one was factored
 
 
 def _solver_checked(solver: str) -> None:
@@ -269,14 +265,10 @@ def _solver_checked(solver: str) -> None:
 
 
 def choice(free: int, solver: str) -> str:
-    """The solver of the linear systems of Newton for so many unknowns.
-
-    >>> choice(3000, "auto"), choice(3001, "auto"), choice(3000, "direct")
-    ('either', 'multigrid', 'direct')
-    """
-    if may_be_factored(solver, free):
-        return "either"
-    return "multigrid" if solver == "auto" else solver
+    """The solver of the linear systems of Newton for so many unknowns."""
+    if solver != "auto":
+        return solver
+    return "direct" if free <= DIRECT_UP_TO else "multigrid"
 
 
 def _laws(body: Body) -> tuple[Law, ...]:
@@ -301,13 +293,13 @@ def _system(
     if method == "secant":
         pointwise = replace(pointwise, laws=tuple(Secant(law) for law in pointwise.laws))
     held = equations.held.ravel()
-    tangent = factored_tangents(equations, pointwise, waiting)
-    if chosen != "direct":
+    if chosen == "direct":
+        tangent = factored_tangents(equations, pointwise, waiting)
+    else:
         at_u = _preconditioner(equations, pointwise, threads)
         tangents: Internal = pointwise if method == "secant" else internal
         symmetric = tangents.symmetric and not equations.following
-        iterated = applied_tangents(equations, tangents.tangent, at_u, symmetric)
-        tangent = either(iterated, tangent) if chosen == "either" else iterated
+        tangent = applied_tangents(equations, tangents.tangent, at_u, symmetric)
     return System(
         held,
         (slice(0, len(held)),),

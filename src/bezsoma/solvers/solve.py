@@ -25,9 +25,8 @@ from bezsoma.mechanics.body import Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.field import Field
 from bezsoma.solvers.direct import (
+    before_factoring,
     direct,
-    iterations_before,
-    may_be_factored,
     why_factored,
     why_iterated,
 )
@@ -82,9 +81,10 @@ def solve(
         solver: "direct" (a sparse factorisation, to rounding; beware of more than some 10 000
             unknowns), "multigrid" (conjugate gradients without a matrix, preconditioned by blocks
             of entities and multigrid), "cg" (the paper's: with an incomplete Cholesky
-            factorisation), or "auto": multigrid, and where that does not come through (nu next to
-            1/2, tets almost flat) direct, for a body of up to `DIRECT_UP_TO` unknowns. With a
+            factorisation), or "auto": multigrid, and where that does not come through soon (nu next
+            to 1/2, tets almost flat) direct, for a body of up to `DIRECT_UP_TO` unknowns. With a
             pressure: "direct", "saddle" (without a matrix, preconditioned), or "auto", likewise.
+            For laws that are not linear "auto" is direct up to so many unknowns.
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
             for others relative to the larger of internal and applied forces, the work of the
@@ -128,12 +128,13 @@ def solve(
     x = None
     if begin is not None and chosen != "direct":
         x = first_displacement(begin, equations.net)
-    small = may_be_factored(solver, equations.free)
-    most = iterations_before(equations.free, body.degree) if small else MOST_ITERATIONS
+    few = before_factoring(solver, equations.free, body.degree)
     try:
-        found = _solved(equations, x, chosen, why_iterated(solver), rtol, watch, most)
+        found = _solved(
+            equations, x, chosen, why_iterated(solver), rtol, watch, few or MOST_ITERATIONS
+        )
     except NotConverged as stopped:
-        if not small:
+        if few is None:
             raise
         why = why_factored(stopped, equations.free)
         K = _stiffness(body, equations.net, "direct", number, watch)
@@ -244,8 +245,8 @@ def _directly(
         raise NotConverged(
             f"the direct solver is left with {history[-1]:.3g} of the residual at zero free "
             f"displacement, and rtol = {rtol:g} was asked for: rounding stops it there. Take a "
-            "larger rtol, or look for tets that are almost flat, nu very close to 1/2, and "
-            "materials of very unequal stiffness",
+            "larger rtol, or look for tets that are almost flat, nu very close to 1/2 (which "
+            "Body(..., incompressible=True) is for), and materials of very unequal stiffness",
             history,
         )
     return _Found(x, "direct (SuperLU, scaled and refined)", history)
@@ -258,7 +259,8 @@ def _without_a_matrix(
     report = watch.iterations(rtol)
     x, history = multigrid(equations, equations.stiffness, b, rtol, report, start, most)
     how = equations.stiffness.runs_on
-    return _Found(x, f"conjugate gradients with entity blocks and multigrid ({how})", history)
+    blocks = "entity blocks and " if equations.net.degree > 1 else ""
+    return _Found(x, f"conjugate gradients with {blocks}multigrid ({how})", history)
 
 
 def _iteratively(

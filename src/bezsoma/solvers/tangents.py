@@ -130,38 +130,6 @@ class Applied:
         return f
 
 
-@dataclass(eq=False)
-class Either:
-    """A tangent that is applied, and factored from where iterations do not come through."""
-
-    applied: Linearised
-    matrix: Callable[[], Linearised]
-    _factored: Linearised | None = None
-
-    def product(self, dx: Floats) -> Floats:
-        """K dx (n,)."""
-        return self.applied.product(dx)
-
-    def solve(self, b: Floats, rtol: float) -> Correction:
-        """The free dx (n,), as the first of the two that finds one does."""
-        event = ""
-        if self._factored is None:
-            try:
-                return self.applied.solve(b, rtol)
-            except Breakdown as failure:
-                event = f"factored, since {failure}"
-                self._factored = self.matrix()
-        dx, linear, _ = self._factored.solve(b, rtol)
-        return Correction(dx, linear, event)
-
-
-def either(
-    applied: Callable[[Floats, float], Linearised], factored: Callable[[Floats, float], Linearised]
-) -> Callable[[Floats, float], Linearised]:
-    """What gives the tangent at x (n,) and a fraction of the load, in either way."""
-    return lambda x, fraction: Either(applied(x, fraction), lambda: factored(x, fraction))
-
-
 def factored_tangents(
     equations: NonlinearEquations, pointwise: Pointwise, waiting: Waiting | None = None
 ) -> Callable[[Floats, float], Linearised]:
