@@ -258,3 +258,21 @@ def test_pressure_of_its_own_gives_the_same_where_strain_is_uniform(law: Any) ->
     one, other = bz.solve(body), bz.solve(replace(body, pressure_degree=1))
     assert apart(other.displacement.controls, one.displacement.controls) < PATH
     assert abs(other.energy - one.energy) < 1e-7 * one.energy or not law.symmetric
+
+
+@pytest.mark.parametrize(
+    ("cells", "solver", "why"),
+    [
+        (2, "auto", "not more than 3000"),
+        (11, "auto", "more than 3000"),
+        (2, "direct", "as asked for"),
+    ],
+)
+def test_the_method_says_why_tangents_are_factored_or_not(
+    cells: int, solver: str, why: str
+) -> None:
+    drawn = [bz.Fixed("bottom"), bz.Moved("top", translation=(0, 0, 0.01))]
+    body = bz.Body(bz.block(cells=cells), 1, bz.NeoHooke(1.0, 0.3), drawn)
+    method = bz.solve(body, solver=solver).method
+    assert method.endswith(why) and ("not more" in method) == ("not more" in why)
+    assert ("factored (SuperLU)" in method) == (cells == 2)

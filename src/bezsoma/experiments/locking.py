@@ -78,7 +78,10 @@ def rows(quick: bool) -> Iterator[Row]:
 
 def measured(quick: bool = False) -> Tables:
     """The work of the load by form, degree and nu."""
-    about = f"{6 * CELLS**3} tets; processor seconds of `solve`, all threads together."
+    about = (
+        f"{6 * CELLS**3} tets; processor seconds of `solve`, all threads together; 2 or 3 "
+        "iterations are refinements of factors."
+    )
     held = {"work": 1e-6, "unknowns": 0.0, "iterations": 0.05}
     return {"locking": Table(about, list(rows(quick)), ("form", "degree", "nu"), held)}
 

@@ -17,8 +17,9 @@ from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.krylov import Report, length
 
 DIRECT_UP_TO = 3000
-"""Unknowns of a small body, one that is factored in a part of a second, whatever nu and the tets
-are: a linear one where iterations do not come through soon, one of other laws always."""
+"""Free unknowns of a small body, one that is factored in a second or so (some at high degree),
+whatever nu and the tets are: a linear one where iterations do not come through soon, one of another
+law or under a pressure that follows always."""
 REFINEMENTS = 10
 LARGEST = 2**31 - 1
 """SuperLU counts entries in 32 bits."""
@@ -27,10 +28,9 @@ LARGEST = 2**31 - 1
 def before_factoring(solver: str, free: int, degree: int) -> int | None:
     """How many iterations a linear body gets before it is factored; None where it never is.
 
-    Factors of a small body cost about 10 n sqrt(unknowns) iterations at degree n, and it gets half
-    as many (docs/theory/solvers.md). What comes through by then is right to 3e-7 of the largest
-    displacement at rtol = 1e-8; what takes more is badly conditioned, and has more digits from its
-    factors.
+    A third to two thirds of what the factors of a displacement cost, and little beside those of
+    both equations (docs/theory/solvers.md). What needs more is badly conditioned: a residual of
+    1e-8 says less and less of the displacement there, and factors give more digits.
 
     >>> before_factoring("auto", 2500, 2), before_factoring("auto", 3001, 2)
     (500, None)
@@ -41,7 +41,7 @@ def before_factoring(solver: str, free: int, degree: int) -> int | None:
 
 def why_iterated(solver: str) -> str:
     """Why iterations were taken, for the summary."""
-    return "quickest where it comes through" if solver == "auto" else "as asked for"
+    return "since that is quickest" if solver == "auto" else "as asked for"
 
 
 def why_factored(stopped: NotConverged, free: int) -> str:

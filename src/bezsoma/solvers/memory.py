@@ -153,7 +153,8 @@ def available() -> int | None:
 def refuse_what_does_not_fit(body: Body, solver: str, linear: bool = True) -> None:
     """Raise an InputError if a solver would need more memory than there is.
 
-    "auto" counts as what it takes for large bodies: for small ones it takes little in any case.
+    "auto" counts as what it takes for large bodies: the factors of small ones take little in any
+    case, and are not counted beforehand where iterations come first.
     """
     without = "saddle" if body.mixed and linear else "multigrid"
     chosen = without if solver == "auto" else solver

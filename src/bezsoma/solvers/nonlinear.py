@@ -120,7 +120,8 @@ def nonlinear_solution(
     with watch.stage("supports", f"{3 * net.count} unknowns"):
         known = prescribed(body, net)
         refuse_rigid_motions(net, known.mask)
-    chosen = choice(int(known.mask.size - known.mask.sum()), solver)
+    free = int(known.mask.size - known.mask.sum())
+    chosen = choice(free, solver)
     with watch.stage("equations", f"{len(body.loads)} loads, {chosen}"):
         equations = nonlinear_equations(body, net, known)
         method, waiting = loading.method, watch.factorisation
@@ -132,7 +133,7 @@ def nonlinear_solution(
             reached = loaded(form.system, rest, steps, rule, _teller(watch), begin)
         except Inadmissible as failure:  # at rest: all other states are met by a smaller step
             raise _unfit(body, failure, "stress is no finite number at rest") from failure
-    how = f"{_NAMES[loading.method]}, {_SOLVES[chosen]}"
+    how = f"{_NAMES[loading.method]}, {_SOLVES[chosen]}, {_why(free, solver)}"
     with watch.stage("reactions", "and energy"):
         try:
             solution = _solution(equations, form, reached, how, dict(watch.timings))
@@ -269,6 +270,14 @@ def choice(free: int, solver: str) -> str:
     if solver != "auto":
         return solver
     return "direct" if free <= DIRECT_UP_TO else "multigrid"
+
+
+def _why(free: int, solver: str) -> str:
+    """Why they are solved so, for the summary."""
+    if solver != "auto":
+        return "as asked for"
+    which = "not more" if free <= DIRECT_UP_TO else "more"
+    return f"since {free} unknowns are {which} than {DIRECT_UP_TO}"
 
 
 def _laws(body: Body) -> tuple[Law, ...]:

@@ -84,7 +84,7 @@ def solve(
             factorisation), or "auto": multigrid, and where that does not come through soon (nu next
             to 1/2, tets almost flat) direct, for a body of up to `DIRECT_UP_TO` unknowns. With a
             pressure: "direct", "saddle" (without a matrix, preconditioned), or "auto", likewise.
-            For laws that are not linear "auto" is direct up to so many unknowns.
+            For laws that are not linear, and pressures that follow, "auto" is direct up to so many.
         rtol: what the Euclidean norm of the residual over the free components has to come down
             to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
             for others relative to the larger of internal and applied forces, the work of the
