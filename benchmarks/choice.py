@@ -32,7 +32,8 @@ def main() -> None:
     cases["0.3, neo-Hooke"] = bz.NeoHooke(E=problem.E, nu=0.3), False
     rows: list[dict[str, Any]] = []
     for degree in options.degrees:
-        meshes = {3 * bz.ControlNet(m, degree).count: m for m in sizes(degree, options.dofs)}
+        blocks = [problem.block(each, degree) for each in options.dofs]
+        meshes = {3 * bz.ControlNet(block, degree).count: block for block in blocks}
         for count, mesh in meshes.items():
             for name, (law, mixed) in cases.items():
                 if mixed and degree == 1:
@@ -46,11 +47,6 @@ def main() -> None:
     text = f"{about['date']}; {about['machine']}; load {about['load']}; `{about['command']}`\n\n"
     text += record.table(head, [cells(row) for row in rows])
     record.stored("choice", {"surroundings": about, "rows": rows}, text)
-
-
-def sizes(degree: int, dofs: list[int]) -> list[bz.TetMesh]:
-    """A block for each number of unknowns."""
-    return [problem.block(each, degree) for each in dofs]
 
 
 def seconds(body: bz.Body, ways: tuple[str, ...], repeats: int) -> list[float | None]:

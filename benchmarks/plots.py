@@ -37,12 +37,8 @@ def operator(found: Run, path: str) -> None:
     left.legend(frameon=False, ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1), fontsize=8)
     rows = [r for r in one if r["instructions"] == names[0] and r["width"] == 8]
     for part, label, colour, width in (
-        (
-            "part",
-            "of the roof",
-            "#cccccc",
-            7,
-        ),  # the larger of the next two: wide, so that both show
+        # The roof is the larger of the next two: wide, so that both show.
+        ("part", "of the roof", "#cccccc", 7),
         ("part_memory", "of the bandwidth", "#0072b2", 1.5),
         ("part_flops", "of the flops", "#d55e00", 1.5),
         ("part_issue", "of the instructions", "#cc79a7", 1.5),
