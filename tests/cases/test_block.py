@@ -43,7 +43,7 @@ def body() -> bz.Body:
 
 
 def test_a_case_is_what_python_says(folder: Path) -> None:
-    solution = bz.solve(body())
+    solution = bz.solve(body(), solver="direct")
     results = bz.read_results(folder / "out")
     difference = results.displacement.controls - solution.displacement.controls
     assert np.abs(difference).max() <= tolerances.TWIN * 0.1
