@@ -43,7 +43,7 @@ namespace {
 
 using bezsoma::handed_over, bezsoma::In, bezsoma::Out, bezsoma::require, bezsoma::Vectors,
     bezsoma::Walk, bezsoma::listen_to_signals, bezsoma::numbered_by_walk, bezsoma::Scalars,
-    bezsoma::Turn, bezsoma::Corners, bezsoma::Inverse;
+    bezsoma::Turn, bezsoma::Corners, bezsoma::Inverse, bezsoma::Outside, bezsoma::Inside;
 
 /// gradients, volumes, lambda and mu of the same tets.
 struct Tets {
@@ -69,7 +69,7 @@ auto element_matrices(int degree, In<double, -1, 4, 3> gradients, In<double, -1>
     const std::size_t size = 3 * bezsoma::count(degree);
     std::vector<double> out(tets * size * size);
     {
-        nb::gil_scoped_release released;
+        const Outside released;
         bezsoma::element_matrices(bezsoma::stiffness(degree), tets, gradients.data(),
                                   volumes.data(), lambda.data(), mu.data(), out.data());
     }
@@ -81,7 +81,7 @@ auto pattern(In<std::int64_t, -1, -1> of_tet, std::size_t controls) {
             "more than 2^31 - 1 controls do not fit the columns of a block matrix");
     bezsoma::Pattern where;
     {
-        nb::gil_scoped_release released;
+        const Outside released;
         bezsoma::Team alone(1);
         alone.watch(listen_to_signals);
         where = bezsoma::pattern(of_tet.data(), of_tet.shape(0), of_tet.shape(1), controls, alone);
@@ -98,7 +98,7 @@ auto assembled(int degree, In<std::int64_t, -1, -1> of_tet, In<double, -1, 4, 3>
     require(of_tet.shape(1) == bezsoma::count(degree), "of_tet does not fit the degree");
     std::vector<double> blocks(9 * column.shape(0));
     {
-        nb::gil_scoped_release released;
+        const Outside released;
         const bezsoma::Elements elements{of_tet.shape(0), of_tet.data(), gradients.data(),
                                          volumes.data(),  lambda.data(), mu.data()};
         const bezsoma::Rows where = rows(start, column);
@@ -114,7 +114,7 @@ void multiply(In<std::int64_t, -1> start, In<std::int32_t, -1> column, In<double
     const bezsoma::Rows where = rows(start, column);
     require(x.shape(0) == where.rows && y.shape(0) == where.rows,
             "x and y must have one row a control");
-    nb::gil_scoped_release released;
+    const Outside released;
     bezsoma::Team team(threads, where.rows / bezsoma::rows_multiplied);
     bezsoma::multiply(where, blocks.data(), x.data(), team, y.data());
 }
@@ -126,7 +126,7 @@ auto incomplete_cholesky(In<std::int64_t, -1> start, In<std::int32_t, -1> column
     require(held.shape(0) == where.rows, "held must have one row a control");
     bezsoma::Factor f;
     {
-        nb::gil_scoped_release released;
+        const Outside released;
         f = bezsoma::incomplete_cholesky(where, blocks.data(), held.data(), shift, least);
     }
     const std::size_t lower = f.column.size();
@@ -143,7 +143,7 @@ void solve_cholesky(In<std::int64_t, -1> start, In<std::int32_t, -1> column,
     const bezsoma::Rows where = rows(start, column);
     require(r.shape(0) == where.rows && z.shape(0) == where.rows,
             "r and z must have one row a control");
-    nb::gil_scoped_release released;
+    const Outside released;
     bezsoma::solve_cholesky({where, below.data(), inverse.data()}, r.data(), z.data());
 }
 
@@ -153,7 +153,7 @@ using TetCorners = In<std::int64_t, -1, 4>;
 
 /// Work that one thread does and Ctrl-C stops, outside of the interpreter.
 template <class Work> auto interruptible(const Work &work) {
-    nb::gil_scoped_release released;
+    const Outside released;
     bezsoma::Team alone(1);
     alone.watch(listen_to_signals);
     return work(alone);
@@ -245,7 +245,7 @@ public:
         : team_(threads), kernels_(&bezsoma::kernels_of(instructions)) {
         const bezsoma::ElasticTets tets = walk.tets();
         team_.watch(listen_to_signals);
-        nb::gil_scoped_release released;
+        const Outside released;
         if (single)
             single_ = std::make_unique<bezsoma::ElasticOperator<float>>(tets, *kernels_, team_);
         else
@@ -265,7 +265,7 @@ public:
     double work(In<double, -1, 3> x) {
         require(static_cast<std::int64_t>(x.shape(0)) == form().controls(),
                 "x must have one row a control");
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         return form().work(x.data());
     }
@@ -286,7 +286,7 @@ private:
         require(x.data() + x.size() <= y.data() || y.data() + y.size() <= x.data(),
                 "x and y must not share memory: y is written while x is still read");
         const int sides = static_cast<int>(x.shape(2));
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         k.apply(x.data(), y.data(), sides);
     }
@@ -316,21 +316,21 @@ public:
                 "the pressure's first numbers its controls in another order than that in which the "
                 "walk first meets them; give net.walked() of a net on the same mesh");
         team_.watch(listen_to_signals);
-        nb::gil_scoped_release released;
+        const Outside released;
         operator_ = std::make_unique<bezsoma::MixedOperator>(
             bezsoma::MixedTets{tets, pressure_degree, first.data()}, *kernels_, team_);
     }
 
     void apply(In<double, -1, 3> u, In<double, -1> p, Vectors f, Scalars g) {
         require(fits(u, p) && fits(f, g), "u, f and p, g must have one row a control");
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         operator_->apply(u.data(), p.data(), f.data(), g.data());
     }
 
     double work(In<double, -1, 3> u, In<double, -1> p) {
         require(fits(u, p), "u and p must have one row a control");
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         return operator_->work(u.data(), p.data());
     }
@@ -341,7 +341,7 @@ public:
                     g.size() == p.size(),
                 "weight, p and g must fit the regions and the pressure's controls");
         const std::vector<double> weights(weight.data(), weight.data() + weight.size());
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         operator_->on_pressure(&bezsoma::PressureKernel::mass, weights, p.data(), g.data());
     }
@@ -382,12 +382,12 @@ public:
                 "f and x must have one row a control");
         bezsoma::Convergence found;
         {
-            nb::gil_scoped_release released;
+            const Outside released;
             const Turn turn(k_.turn());
             found = bezsoma::conjugate_gradients(
                 k_.form(), inverse_.search(k_.team()), inverse_.held.data(), f.data(), x.data(),
                 reference, rtol, most, k_.team(), [&](int iteration, double residual) {
-                    nb::gil_scoped_acquire held;
+                    const Inside held;
                     report(iteration, residual);
                 });
         }
@@ -417,7 +417,7 @@ public:
                 "weight and levels must fit the regions and the pressure's controls");
         std::vector<double> weights(weight.data(), weight.data() + weight.size());
         std::vector<double> out(levels.data(), levels.data() + levels.size());
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(form_.turn());
         pressure_ = std::make_unique<bezsoma::PressureInverse>(form.form(), std::move(weights),
                                                                std::move(out), form.team());
@@ -429,14 +429,14 @@ public:
         require(form_.fits(f, g) && form_.fits(u, p), "f, u and g, p must have one row a control");
         bezsoma::Convergence found;
         {
-            nb::gil_scoped_release released;
+            const Outside released;
             const Turn turn(form_.turn());
             bezsoma::Search search = inverse_.search(form_.team());
             found = bezsoma::saddle(
                 form_.form(), search, *pressure_,
                 {inverse_.held.data(), f.data(), g.data(), unit, volume_weight, rtol, most},
                 u.data(), p.data(), form_.team(), [&](int iteration, double residual) {
-                    nb::gil_scoped_acquire held;
+                    const Inside held;
                     report(iteration, residual);
                 });
         }
@@ -459,18 +459,20 @@ NB_MODULE(_core, m) {
     // frame of an error that was kept) is told of a leak otherwise, in words that help no user.
     // What is held then goes with the process.
     nb::set_leak_warnings(false);
+    nb::module_::import_("atexit").attr("register")(
+        nb::cpp_function([] { bezsoma::gate.close(); }));
     m.doc() = "BezSoma's kernels over flat arrays";
     m.def("element_matrices", &element_matrices, "degree"_a, "gradients"_a, "volumes"_a, "lam"_a,
           "mu"_a);
     m.def("pattern", &pattern, "of_tet"_a, "controls"_a);
     m.def("assembled", &assembled, "degree"_a, "of_tet"_a, "gradients"_a, "volumes"_a, "lam"_a,
           "mu"_a, "starts"_a, "columns"_a, "threads"_a = 0);
-    m.def("multiply", &multiply, "starts"_a, "columns"_a, "blocks"_a, "x"_a, "y"_a,
+    m.def("multiply", &multiply, "starts"_a, "columns"_a, "blocks"_a, "x"_a, "y"_a.noconvert(),
           "threads"_a = 0);
     m.def("incomplete_cholesky", &incomplete_cholesky, "starts"_a, "columns"_a, "blocks"_a,
           "held"_a, "shift"_a, "least"_a);
     m.def("solve_cholesky", &solve_cholesky, "starts"_a, "columns"_a, "below"_a, "inverse"_a, "r"_a,
-          "z"_a);
+          "z"_a.noconvert());
     m.def("orientations", &orientations, "points"_a, "tets"_a, "flat"_a, "largest"_a);
     m.def("simplices", &simplices, "tets"_a, "vertices"_a, "width"_a);
     m.def("neighbours", &neighbours, "faces_of_tet"_a, "faces"_a, "sign"_a);
@@ -497,7 +499,7 @@ NB_MODULE(_core, m) {
              "walk"_a, "pressure_degree"_a, "first"_a, "threads"_a = 0, "instructions"_a = "")
         .def("apply", &MixedFree::apply, "u"_a, "p"_a, "f"_a.noconvert(), "g"_a.noconvert())
         .def("work", &MixedFree::work, "u"_a, "p"_a)
-        .def("mass", &MixedFree::mass, "weight"_a, "p"_a, "g"_a)
+        .def("mass", &MixedFree::mass, "weight"_a, "p"_a, "g"_a.noconvert())
         .def_prop_ro("instructions", [](const MixedFree &k) { return k.kernels().name; })
         .def_prop_ro("threads", [](MixedFree &k) { return k.team().size(); });
     nb::class_<Multigrid>(m, "Multigrid")
@@ -505,8 +507,8 @@ NB_MODULE(_core, m) {
                       In<bool, -1, 3>, In<bool, -1, 3>>(),
              "k"_a, "walk"_a, "corners"_a.none(), "points"_a, "held"_a, "held_vertices"_a,
              nb::keep_alive<1, 2>())
-        .def("solve", &Multigrid::solve, "f"_a, "x"_a, "reference"_a, "rtol"_a, "most"_a,
-             "report"_a)
+        .def("solve", &Multigrid::solve, "f"_a, "x"_a.noconvert(), "reference"_a, "rtol"_a,
+             "most"_a, "report"_a)
         .def_prop_ro("levels", &Multigrid::levels)
         .def_prop_ro("bytes", &Multigrid::bytes);
     nb::class_<Saddle>(m, "Saddle")
@@ -514,8 +516,8 @@ NB_MODULE(_core, m) {
                       In<bool, -1, 3>, In<bool, -1, 3>, In<double, -1>, In<double, -1, -1>>(),
              "form"_a, "walk"_a, "corners"_a.none(), "points"_a, "held"_a, "held_vertices"_a,
              "weight"_a, "levels"_a, nb::keep_alive<1, 2>())
-        .def("solve", &Saddle::solve, "f"_a, "g"_a, "u"_a, "p"_a, "unit"_a, "volume_weight"_a,
-             "rtol"_a, "most"_a, "report"_a)
+        .def("solve", &Saddle::solve, "f"_a, "g"_a, "u"_a.noconvert(), "p"_a.noconvert(), "unit"_a,
+             "volume_weight"_a, "rtol"_a, "most"_a, "report"_a)
         .def_prop_ro("bytes", &Saddle::bytes);
     bezsoma::bind_laws(m);
     bezsoma::bind_inverse(m);

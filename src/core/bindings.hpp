@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "bindings_interpreter.hpp"
 #include "elastic_operator.hpp"
 #include "kernels.hpp"
 
@@ -49,8 +50,8 @@ bool within(const auto &numbers, std::size_t count) {
 }
 
 /// How many controls there are where each run begins as the walk first touches it; -1 where not.
-inline std::int32_t numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
-    std::int32_t next = 0;
+inline std::int64_t numbered_by_walk(int degree, const In<std::int32_t, -1, -1> &first) {
+    std::int64_t next = 0;
     const std::size_t per_tet = first.shape(1);
     for (std::size_t i = 0; i < first.size(); ++i) {
         const std::int32_t run = first.data()[i];
@@ -118,7 +119,7 @@ using Turn = std::lock_guard<std::recursive_mutex>;
 
 /// Lets Python's signal handlers run: Ctrl-C in the middle of a computation.
 inline void listen_to_signals() {
-    nb::gil_scoped_acquire held;
+    const Inside held;
     if (PyErr_CheckSignals() != 0)
         throw nb::python_error();
 }

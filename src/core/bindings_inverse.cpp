@@ -40,7 +40,7 @@ Inverse::Inverse(Walk &walk, const std::optional<Corners> &corners, const Suppor
     const std::vector<std::uint8_t> at_vertices(held_vertices.data(),
                                                 held_vertices.data() + held_vertices.size());
     const std::int32_t *rows = corners ? corners->data() : tets.first;
-    nb::gil_scoped_release released;
+    const Outside released;
     const Turn ours(turn);
     if (tets.degree > 1) {
         std::optional<Chunks> own;
@@ -52,7 +52,7 @@ Inverse::Inverse(Walk &walk, const std::optional<Corners> &corners, const Suppor
     }
     BlockRows matrix = vertex_matrix(tets, rows, vertices, at_vertices.data(), team);
     {
-        nb::gil_scoped_acquire counted;
+        const Inside counted;
         walk.first = {};
     }
     aggregation = std::make_unique<Aggregation>(std::move(matrix), points.data(),
@@ -81,7 +81,7 @@ public:
         const auto &held = inverse_->held;
         require(r.size() == held.size() && z.size() == held.size(),
                 "r and z must have one row a control");
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         inverse_->search(team_).answer(r.data(), z.data(), held.data(), held.size());
     }
@@ -104,8 +104,8 @@ void bind_inverse(nb::module_ &m) {
                       In<bool, -1, 3>, std::size_t, const std::string &>(),
              "walk"_a, "corners"_a.none(), "points"_a, "held"_a, "held_vertices"_a, "threads"_a = 0,
              "instructions"_a = "")
-        .def("apply", &StandingAlone::apply<double>, "r"_a, "z"_a)
-        .def("apply_single", &StandingAlone::apply<float>, "r"_a, "z"_a)
+        .def("apply", &StandingAlone::apply<double>, "r"_a, "z"_a.noconvert())
+        .def("apply_single", &StandingAlone::apply<float>, "r"_a, "z"_a.noconvert())
         .def_prop_ro("bytes", &StandingAlone::bytes)
         .def_prop_ro("threads", &StandingAlone::threads);
 }

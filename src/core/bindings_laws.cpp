@@ -151,7 +151,7 @@ public:
         team_.watch(listen_to_signals);
         const GivenRule rule{static_cast<std::int32_t>(weights.shape(0)), points.data(),
                              weights.data(), values.data()};
-        nb::gil_scoped_release released;
+        const Outside released;
         if (single)
             single_ = std::make_unique<PointwiseOperator<float>>(tets, pressure, std::move(own),
                                                                  rule, kernels_, team_);
@@ -162,7 +162,7 @@ public:
 
     void forces(In<double, -1, 3> u, Vectors f) {
         fits(u.shape(0), f.shape(0), false);
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         laws().forces({u.data(), nullptr}, {f.data(), nullptr});
     }
@@ -170,7 +170,7 @@ public:
     void tangent(In<double, -1, 3> u, In<double, -1, 3> du, Vectors df) {
         fits(u.shape(0), df.shape(0), false);
         fits(du.shape(0), df.shape(0), false);
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         laws().tangent({u.data(), nullptr}, {du.data(), nullptr}, {df.data(), nullptr});
     }
@@ -181,7 +181,7 @@ public:
         const auto rows = static_cast<std::size_t>(single_->controls());
         require(u.shape(0) == rows && du.shape(0) == rows && df.shape(0) == rows,
                 "displacements and forces must have one row a control");
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         single_->tangent({u.data(), nullptr}, {du.data(), nullptr}, {df.data(), nullptr});
     }
@@ -189,7 +189,7 @@ public:
     double energy(In<double, -1, 3> u) {
         fits(u.shape(0), u.shape(0), false);
         require_energy();
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         return laws().energy({u.data(), nullptr});
     }
@@ -197,7 +197,7 @@ public:
     void mixed_forces(In<double, -1, 3> u, In<double, -1> p, Vectors f, Scalars g) {
         fits(u.shape(0), f.shape(0), true);
         fits_pressure(p.shape(0), g.shape(0));
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         laws().forces({u.data(), p.data()}, {f.data(), g.data()});
     }
@@ -208,7 +208,7 @@ public:
         fits(du.shape(0), df.shape(0), true);
         fits_pressure(p.shape(0), dg.shape(0));
         fits_pressure(dp.shape(0), dg.shape(0));
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         laws().tangent({u.data(), p.data()}, {du.data(), dp.data()}, {df.data(), dg.data()});
     }
@@ -217,7 +217,7 @@ public:
         fits(u.shape(0), u.shape(0), true);
         fits_pressure(p.shape(0), p.shape(0));
         require_energy();
-        nb::gil_scoped_release released;
+        const Outside released;
         const Turn turn(turn_);
         return laws().energy({u.data(), p.data()});
     }
@@ -315,13 +315,14 @@ void bind_laws(nb::module_ &m) {
              "walk"_a, "laws"_a, "points"_a, "weights"_a, "values"_a, "threads"_a = 0,
              "instructions"_a = "", "single"_a = false, "pressure_degree"_a = 0,
              "first_pressure"_a = nb::none())
-        .def("forces", &Pointwise::forces, "u"_a, "f"_a)
-        .def("tangent", &Pointwise::tangent, "u"_a, "du"_a, "df"_a)
-        .def("tangent_single", &Pointwise::tangent_single, "u"_a, "du"_a, "df"_a)
+        .def("forces", &Pointwise::forces, "u"_a, "f"_a.noconvert())
+        .def("tangent", &Pointwise::tangent, "u"_a, "du"_a, "df"_a.noconvert())
+        .def("tangent_single", &Pointwise::tangent_single, "u"_a, "du"_a, "df"_a.noconvert())
         .def("energy", &Pointwise::energy, "u"_a)
-        .def("mixed_forces", &Pointwise::mixed_forces, "u"_a, "p"_a, "f"_a, "g"_a)
-        .def("mixed_tangent", &Pointwise::mixed_tangent, "u"_a, "p"_a, "du"_a, "dp"_a, "df"_a,
-             "dg"_a)
+        .def("mixed_forces", &Pointwise::mixed_forces, "u"_a, "p"_a, "f"_a.noconvert(),
+             "g"_a.noconvert())
+        .def("mixed_tangent", &Pointwise::mixed_tangent, "u"_a, "p"_a, "du"_a, "dp"_a,
+             "df"_a.noconvert(), "dg"_a.noconvert())
         .def("mixed_energy", &Pointwise::mixed_energy, "u"_a, "p"_a)
         .def_prop_ro("bytes", &Pointwise::bytes)
         .def_prop_ro("least_jacobian", &Pointwise::least_jacobian)

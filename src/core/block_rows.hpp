@@ -30,8 +30,6 @@ struct BlockRows {
     std::size_t bytes() const { return start.size() * 8 + column.size() * 4 + value.size() * 4; }
 };
 
-inline std::size_t size_of(std::int64_t n) { return static_cast<std::size_t>(n); }
-
 /// Runs work(begin, end, thread) for all rows, a fixed number of them at a time.
 template <class Work> void each_piece(Team &team, std::int64_t rows, const Work &work) {
     constexpr std::size_t piece = 512;

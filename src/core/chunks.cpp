@@ -86,9 +86,10 @@ void hand_to_owners(Chunks &all, Team &team) {
 
 Chunks chunks(int degree, const std::int32_t *first, std::int64_t tets, std::int64_t target,
               Team &team) {
-    // A tet adds n^3 / 6 controls on the average in a large mesh.
+    // A tet adds n^3 / 6 controls on the average in a large mesh. A batch of tets or two at least:
+    // fewer would leave lanes empty.
     const std::int64_t cube = std::int64_t{degree} * degree * degree;
-    const std::int64_t most = std::max<std::int64_t>(64, 6 * target / cube);
+    const std::int64_t most = std::max<std::int64_t>(16, 6 * target / cube);
     const std::int64_t number = std::max<std::int64_t>(1, (tets + most / 2) / most);
     std::vector<std::int64_t> at;
     for (std::int64_t i = 0; i <= number; ++i)

@@ -13,12 +13,11 @@ namespace bezsoma {
 
 namespace {
 
-// u and f of a chunk fit the second-level cache or nearly (an area may be twice as large), and
-// small meshes still give many threads their shares: 2, 3, 4, 6, 8, 12, 16 or 24 threads equal
-// ones. Smaller chunks touch more controls of others, which are copied one by one.
+// u and f of a chunk fit the second-level cache or nearly (an area may be twice as large), and from
+// 72,000 controls on there are 48 of them or more, equal shares for 2, 3, 4, 6, 8, 12, 16 or 24
+// threads. Smaller meshes have fewer: smaller chunks would touch more controls of others, which are
+// copied one by one.
 constexpr std::int64_t most_controls = 24000, least_controls = 1500, shares = 48;
-
-std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
 /// The tet of a chunk, by the walk, at a place batch * lanes + lane: in a stretch of `apart`
 /// batches each lane walks on from tet to tet.
@@ -88,13 +87,13 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
     batch_.push_back(0);
     for (const Chunk &chunk : chunks_.parts)
         batch_.push_back(batch_.back() + (chunk.tets + lanes_ - 1) / lanes_);
-    make_large(first_, size(batch_.back() * per_tet * lanes_), team_);
-    make_large(region_, size(batch_.back() * lanes_), team_);
-    met_.resize(size(batch_.back()));
+    make_large(first_, size_of(batch_.back() * per_tet * lanes_), team_);
+    make_large(region_, size_of(batch_.back() * lanes_), team_);
+    met_.resize(size_of(batch_.back()));
     if (forms_shapes<T>(tets.degree)) {
-        make_large(points_, size(3 * (chunks_.controls + chunks_.foreign)) + padding, team_);
+        make_large(points_, size_of(3 * (chunks_.controls + chunks_.foreign)) + padding, team_);
     } else {
-        make_large(geometry_, size(batch_.back() * 9 * lanes_), team_);
+        make_large(geometry_, size_of(batch_.back() * 9 * lanes_), team_);
     }
     team_.run(chunks_.parts.size(), [&](std::size_t c, std::size_t) {
         const Chunk &chunk = chunks_.parts[c];
@@ -106,16 +105,17 @@ template <class T> void ElasticOperator<T>::pack(const ElasticTets &tets) {
             const std::int64_t tet = chunk.tet + std::min(i, chunk.tets - 1);
             const std::int64_t batch = batch_[c] + place / lanes_, lane = place % lanes_;
             for (std::int64_t e = 0; e < per_tet; ++e) {
-                const std::int32_t local = chunks_.local[size(tet * per_tet + e)];
+                const std::int32_t local = chunks_.local[size_of(tet * per_tet + e)];
                 const bool own = local < chunk.owned;
-                first_[size((batch * per_tet + e) * lanes_ + lane)] =
+                first_[size_of((batch * per_tet + e) * lanes_ + lane)] =
                     kernel_.row * (own ? local : local - chunk.owned - foreign);
                 if (own)
                     met = std::max(met, local + controls_inside(tets.degree, static_cast<int>(e)));
             }
-            met_[size(batch)] = met;
+            met_[size_of(batch)] = met;
             // A lane too many: the last tet again, without stiffness, adds nothing.
-            region_[size(batch * lanes_ + lane)] = i < chunk.tets ? tets.region(tet) : tets.regions;
+            region_[size_of(batch * lanes_ + lane)] =
+                i < chunk.tets ? tets.region(tet) : tets.regions;
             if (forms_shapes<T>(tets.degree))
                 keep_points(tets, chunk, tet);
             else
@@ -136,7 +136,7 @@ template <class T>
 void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk,
                                      std::int64_t tet) {
     for (std::int64_t v = 0; v < 4; ++v) {
-        const std::int64_t local = chunks_.local[size(4 * tet + v)];
+        const std::int64_t local = chunks_.local[size_of(4 * tet + v)];
         const double *from = tets.points + 3 * tets.corners[4 * tets.order[tet] + v];
         T *to = points_.data() + first_point(chunk) +
                 3 * (local < chunk.owned ? local : local - chunk.owned - std::ssize(chunk.foreign));
@@ -150,7 +150,7 @@ void ElasticOperator<T>::keep_points(const ElasticTets &tets, const Chunk &chunk
 template <class T> void ElasticOperator<T>::apply(const T *u, T *f, int sides) {
     const bool alone = team_.size() == 1;
     const std::int64_t row = 3 * std::int64_t{sides};
-    foreign_.resize(size(row * (alone ? chunks_.largest : chunks_.foreign)) +
+    foreign_.resize(size_of(row * (alone ? chunks_.largest : chunks_.foreign)) +
                     cache_line / sizeof(T));
     T *const foreign = on_line(foreign_.data());
     const std::size_t parts = chunks_.parts.size();
@@ -226,7 +226,7 @@ void ElasticOperator<T>::forces_beside(std::size_t c, const T *u, T *f, T *f_for
                                        bool alone, std::vector<T> &scratch) {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t own = chunk.owned, foreign = std::ssize(chunk.foreign), row = 3 * sides;
-    make_least(scratch, size(row * chunks_.largest) + padding + cache_line / sizeof(T));
+    make_least(scratch, size_of(row * chunks_.largest) + padding + cache_line / sizeof(T));
     Batches<T> b = batches(c);
     T *next = on_line(scratch.data());
     b.u = u + row * chunk.control;
@@ -251,7 +251,7 @@ void ElasticOperator<T>::forces_of_side(std::size_t c, const T *u, T *f, T *f_fo
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t own = 3 * std::int64_t{chunk.owned}, foreign = 3 * std::ssize(chunk.foreign);
     const std::int64_t row = sides > 1 ? 3 + 3 : 3; // of u, and of f where it comes here first
-    make_least(scratch, size(row * chunks_.largest) + padding + cache_line / sizeof(T));
+    make_least(scratch, size_of(row * chunks_.largest) + padding + cache_line / sizeof(T));
     Batches<T> b = batches(c);
     T *next = on_line(scratch.data());
     b.u = u + own_begin(chunk, sides);
@@ -284,7 +284,7 @@ Batches<T> ElasticOperator<T>::with_area(std::size_t c, const T *u, int sides,
                                          std::vector<T> &scratch) const {
     const Chunk &chunk = chunks_.parts[c];
     const std::int64_t row = row_of_area + (sides > 1 ? 3 : 0); // own numbers, brought together
-    make_least(scratch, size(row * chunks_.largest) + cache_line / sizeof(T));
+    make_least(scratch, size_of(row * chunks_.largest) + cache_line / sizeof(T));
     Batches<T> b = batches(c);
     b.u = u + own_begin(chunk, sides);
     b.area = on_line(scratch.data());
@@ -332,7 +332,7 @@ template <class T> double ElasticOperator<T>::work(const T *u) {
             sums[c] = kernel_.work(with_area(c, u, 1, scratch));
             return;
         }
-        make_least(scratch, size(3 * std::int64_t{chunks_.largest}) + padding);
+        make_least(scratch, size_of(3 * std::int64_t{chunks_.largest}) + padding);
         Batches<T> b = batches(c);
         b.u = scratch.data();
         T *const past = std::copy_n(u + 3 * std::int64_t{chunk.control},

@@ -22,15 +22,14 @@ Entity entity_of_tet(std::int32_t control, int local, const std::int32_t *corner
 
 Entities entities(int degree, const std::int32_t *first, const std::int32_t *corners,
                   std::int64_t tets, Team &team) {
-    const std::size_t per_tet = static_cast<std::size_t>(entities_of_tet(degree));
-    const std::size_t touches = static_cast<std::size_t>(tets) * per_tet;
-    const auto size = [](auto n) { return static_cast<std::size_t>(n); };
+    const std::size_t per_tet = size_of(entities_of_tet(degree));
+    const std::size_t touches = size_of(tets) * per_tet;
     // The walk numbered entities as it met them, so a new one begins where the last one ended.
     std::size_t count = 0, controls = 0;
     in_turn(team, touches, [&](std::size_t i) {
-        if (size(first[i]) == controls) {
+        if (size_of(first[i]) == controls) {
             ++count;
-            controls += size(controls_inside(degree, static_cast<int>(i % per_tet)));
+            controls += size_of(controls_inside(degree, static_cast<int>(i % per_tet)));
         }
     });
     Entities found;
@@ -38,21 +37,22 @@ Entities entities(int degree, const std::int32_t *first, const std::int32_t *cor
     std::vector<std::int32_t> number; // of the entity that begins at a control
     number.reserve(controls);
     in_turn(team, touches, [&](std::size_t i) {
-        if (size(first[i]) != number.size())
+        if (size_of(first[i]) != number.size())
             return;
         const int local = static_cast<int>(i % per_tet);
-        number.resize(number.size() + size(controls_inside(degree, local)),
+        number.resize(number.size() + size_of(controls_inside(degree, local)),
                       static_cast<std::int32_t>(found.all.size()));
         found.all.push_back(entity_of_tet(first[i], local, corners + 4 * (i / per_tet)));
     });
     found.start.assign(found.all.size() + 2, 0);
     // Two places ahead, so that filling moves each start to where it belongs.
-    in_turn(team, touches, [&](std::size_t i) { ++found.start[size(number[size(first[i])]) + 2]; });
+    in_turn(team, touches,
+            [&](std::size_t i) { ++found.start[size_of(number[size_of(first[i])]) + 2]; });
     std::partial_sum(found.start.begin(), found.start.end(), found.start.begin());
     found.around.resize(touches);
     found.local.resize(touches);
     in_turn(team, touches, [&](std::size_t i) {
-        const auto to = size(found.start[size(number[size(first[i])]) + 1]++);
+        const auto to = size_of(found.start[size_of(number[size_of(first[i])]) + 1]++);
         found.around[to] = static_cast<std::int32_t>(i / per_tet);
         found.local[to] = static_cast<std::uint8_t>(i % per_tet);
     });

@@ -19,15 +19,6 @@ namespace bezsoma {
 
 namespace {
 
-std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
-
-double choose(int n, int k) {
-    double c = 1;
-    for (int i = 1; i <= k; ++i)
-        c = c * (n - k + i) / i;
-    return c;
-}
-
 using Index = std::array<int, 4>;
 
 /// The indices inside a simplex of that dimension, all entries positive, in the order of controls.
@@ -49,18 +40,19 @@ std::vector<Index> indices_inside(int degree, int dim) {
 /// c_ab,ij for b <= a: (pairs, dim + 1, dim + 1).
 std::vector<double> couplings(int degree, int dim) {
     const std::vector<Index> inside = indices_inside(degree, dim);
-    const double scale = choose(2 * degree - 2, degree - 1) * choose(2 * degree + 1, 3);
+    const double scale =
+        1.0 * combinations(2 * degree - 2, degree - 1) * combinations(2 * degree + 1, 3);
     std::vector<double> c;
     for (std::size_t a = 0; a < inside.size(); ++a)
         for (std::size_t b = 0; b <= a; ++b)
             for (int i = 0; i <= dim; ++i)
                 for (int j = 0; j <= dim; ++j) {
                     Index x = inside[a], y = inside[b];
-                    --x[size(i)];
-                    --y[size(j)];
+                    --x[size_of(i)];
+                    --y[size_of(j)];
                     double product = 1 / scale;
                     for (std::size_t v = 0; v < 4; ++v)
-                        product *= choose(x[v] + y[v], x[v]);
+                        product *= combinations(x[v] + y[v], x[v]);
                     c.push_back(product);
                 }
     return c;
@@ -68,7 +60,8 @@ std::vector<double> couplings(int degree, int dim) {
 
 /// c_ij of the function of vertex 0: (1/V) int psi_i psi_j, where grad psi = n sum_i psi_i g_i.
 std::array<double, 16> couplings_of_vertex(int degree) {
-    const double scale = choose(2 * degree - 2, degree - 1) * choose(2 * degree + 1, 3);
+    const double scale =
+        1.0 * combinations(2 * degree - 2, degree - 1) * combinations(2 * degree + 1, 3);
     const VertexReach reach = vertex_reach(degree);
     std::vector<std::pair<Index, double>> parts{{Index{degree}, 1.0}};
     for (int j = 1; j < degree; ++j)
@@ -80,7 +73,8 @@ std::array<double, 16> couplings_of_vertex(int degree) {
     for (const auto &[a, s] : parts)
         for (const auto &[b, t] : parts)
             for (int ij = 0; ij < 16; ++ij)
-                c[size(ij)] += s * t * lowered_product(a.data(), ij / 4, b.data(), ij % 4) / scale;
+                c[size_of(ij)] +=
+                    s * t * lowered_product(a.data(), ij / 4, b.data(), ij % 4) / scale;
     return c;
 }
 
@@ -96,7 +90,7 @@ void sum_tets(const ElasticTets &tets, const Entities &entities, std::size_t e, 
     const int corners = entities.all[e].dim + 1;
     std::fill_n(q, 9 * corners * corners, 0.0);
     const double square = tets.degree * tets.degree;
-    for (auto t = size(entities.start[e]); t < size(entities.start[e + 1]); ++t) {
+    for (auto t = size_of(entities.start[e]); t < size_of(entities.start[e + 1]); ++t) {
         const std::int64_t tet = entities.around[t];
         const TetShape shape = tets.shape(tet);
         const double scale = square * shape.volume;
@@ -185,8 +179,8 @@ EntityBlocks::EntityBlocks(const ElasticTets &tets, const Entities &entities)
     : tets_(tets), entities_(entities), of_vertex_{}, rows_{} {
     of_vertex_ = couplings_of_vertex(tets.degree);
     for (int dim = 0; dim < 4; ++dim) {
-        couplings_[size(dim)] = couplings(tets.degree, dim);
-        rows_[size(dim)] = 3 * indices_inside(tets.degree, dim).size();
+        couplings_[size_of(dim)] = couplings(tets.degree, dim);
+        rows_[size_of(dim)] = 3 * indices_inside(tets.degree, dim).size();
     }
 }
 
@@ -194,7 +188,7 @@ EntityBlocks::EntityBlocks(const ElasticTets &tets, const Entities &entities)
 /// 3).
 void EntityBlocks::sum_around_vertex(std::size_t e, double *q) const {
     std::fill_n(q, 9, 0.0);
-    for (auto t = size(entities_.start[e]); t < size(entities_.start[e + 1]); ++t) {
+    for (auto t = size_of(entities_.start[e]); t < size_of(entities_.start[e + 1]); ++t) {
         const std::int64_t tet = entities_.around[t];
         TetShape shape = tets_.shape(tet);
         std::swap(shape.gradients[0], shape.gradients[entities_.local[t]]);
@@ -223,9 +217,9 @@ void EntityBlocks::inverse(std::size_t e, const std::uint8_t *fixed, std::vector
         std::copy_n(q, 9, block.a);
     } else {
         sum_tets(tets_, entities_, e, q);
-        fill(block, couplings_[size(entity.dim)], q, entity.dim + 1);
+        fill(block, couplings_[size_of(entity.dim)], q, entity.dim + 1);
     }
-    const std::uint8_t *own = fixed + 3 * size(entity.control);
+    const std::uint8_t *own = fixed + 3 * size_of(entity.control);
     take_out(block, own);
     invert(block);
     pack(block, own, packed);

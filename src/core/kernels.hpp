@@ -50,10 +50,12 @@ struct Entity {
 /// Entities of one dimension in batches of one per lane, with the inverses of their blocks.
 ///
 /// value (batches, rows (rows + 1) / 2, lanes): the lower triangles, row after row; z (batches,
-/// rows, lanes) and moments (batches, dim + 1, 3, lanes) are written by `forward`, z is read by
-/// `back`.
+/// rows, lanes) is written by `forward` and read by `back`. Vertices have neither: their blocks are
+/// those of functions that reach along edges, put together from moments. moments (batches,
+/// `moments_of(dim)`, lanes) are written by `forward`: three for each vertex of the entity, and on
+/// edges three more for each, of its own function.
 struct BlockBatches {
-    std::int64_t count;
+    std::int64_t count;           // batches
     const std::int32_t *control;  // (batches, lanes) the first control, counted from where r and p
                                   // begin; 0 for a lane without entity
     const std::int32_t *vertices; // (batches, dim + 1, lanes)
@@ -62,11 +64,14 @@ struct BlockBatches {
     float *moments;
 };
 
+/// With w = a_i / n, what a linear function that is one at vertex i has at control a, and
+/// psi = `VertexReach` of its distance from that vertex, the vertex' own function, on edges alone.
 struct BlockKernel {
-    /// z = B (scale r), moments_i = sum_a (a_i / n) scale r_a; returns the sum of scale r . z.
+    /// z = B (scale r); moments of vertex i: sum_a w scale r_a, then sum_a psi scale r_a. Returns
+    /// the sum of scale r . z, 0 for vertices.
     double (*forward)(const BlockBatches &, const double *r, double scale);
-    /// p = beta p + back_scale (z + sum_i (a_i / n) coarse_(vertex i)), for the controls of real
-    /// lanes (those of `count` entities, the last batch may be part full).
+    /// p = beta p + scale (z + sum_i (w coarse_i0 + psi coarse_i1)) for the controls of `entities`
+    /// lanes (the last batch may be part full); coarse (vertices, 2, 3).
     void (*back)(const BlockBatches &, std::int64_t entities, const float *coarse, double scale,
                  double beta, double *p);
 };

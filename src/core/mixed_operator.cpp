@@ -11,8 +11,6 @@ namespace bezsoma {
 
 namespace {
 
-std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
-
 Chunks chunks_of_displacement(const ElasticTets &tets, Team &team) {
     return chunks(tets.degree, tets.first, tets.tets, controls_of_chunk(tets), team);
 }
@@ -37,17 +35,17 @@ MixedOperator::MixedOperator(const MixedTets &tets, const Kernels &kernels, Team
 /// Lanes without a tet keep geometry zero: they read control 0 and add nothing.
 void MixedOperator::pack(const ElasticTets &tets) {
     const std::int64_t lanes = lanes_.lanes();
-    region_.resize(size(lanes_.batches() * lanes));
-    make_large(geometry_, size(lanes_.batches() * 9 * lanes), team_);
+    region_.resize(size_of(lanes_.batches() * lanes));
+    make_large(geometry_, size_of(lanes_.batches() * 9 * lanes), team_);
     team_.run(u_.parts(), [&](std::size_t part, std::size_t) {
         lanes_.each(u_.chunks(), part,
                     [&](std::int64_t tet, std::int64_t batch, std::int64_t lane) {
                         const TetShape shape = tets.shape(tet);
                         const double root = std::sqrt(shape.volume);
                         for (std::int64_t k = 0; k < 9; ++k)
-                            geometry_[size((batch * 9 + k) * lanes + lane)] =
+                            geometry_[size_of((batch * 9 + k) * lanes + lane)] =
                                 root * shape.gradients[1 + k / 3][k % 3];
-                        region_[size(batch * lanes + lane)] = tets.region(tet);
+                        region_[size_of(batch * lanes + lane)] = tets.region(tet);
                     });
     });
 }

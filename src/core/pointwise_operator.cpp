@@ -11,8 +11,6 @@ namespace bezsoma {
 
 namespace {
 
-std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
-
 /// The one for the precision.
 template <class T> auto chosen(const auto &in_double, const auto &in_single) {
     if constexpr (sizeof(T) == 8)
@@ -61,43 +59,43 @@ PointwiseOperator<T>::PointwiseOperator(const ElasticTets &tets,
 
 /// Numbers the batches: in each chunk region by region.
 template <class T> void PointwiseOperator<T>::group(const ElasticTets &tets) {
-    std::vector<std::int64_t> many(size(tets.regions));
+    std::vector<std::int64_t> many(size_of(tets.regions));
     std::int64_t batch = 0;
     group_.push_back(0);
     for (const Chunk &chunk : u_.chunks().parts) {
         std::ranges::fill(many, 0);
         for (std::int64_t i = chunk.tet; i < chunk.tet + chunk.tets; ++i)
-            ++many[size(tets.region(i))];
+            ++many[size_of(tets.region(i))];
         for (std::int32_t region = 0; region < tets.regions; ++region)
-            if (const std::int64_t batches = (many[size(region)] + lanes_ - 1) / lanes_) {
+            if (const std::int64_t batches = (many[size_of(region)] + lanes_ - 1) / lanes_) {
                 groups_.push_back({batch, batches, region});
                 batch += batches;
             }
         group_.push_back(groups_.size());
     }
-    make_large(first_, size(batch * entities_of_tet(tets.degree) * lanes_), team_);
+    make_large(first_, size_of(batch * entities_of_tet(tets.degree) * lanes_), team_);
     if (p_)
-        first_pressure_.resize(size(batch * entities_of_tet(p_->chunks().degree) * lanes_));
-    make_large(geometry_, size(batch * 10 * lanes_), team_);
-    tet_.resize(size(batch * lanes_));
+        first_pressure_.resize(size_of(batch * entities_of_tet(p_->chunks().degree) * lanes_));
+    make_large(geometry_, size_of(batch * 10 * lanes_), team_);
+    tet_.resize(size_of(batch * lanes_));
 }
 
 /// Lanes without a tet keep geometry zero: they read control 0 and add nothing.
 template <class T> void PointwiseOperator<T>::pack(const ElasticTets &tets) {
     team_.run(u_.parts(), [&](std::size_t part, std::size_t) {
-        std::vector<std::int64_t> next(size(tets.regions));
+        std::vector<std::int64_t> next(size_of(tets.regions));
         for (std::size_t g = group_[part]; g < group_[part + 1]; ++g)
-            next[size(groups_[g].region)] = groups_[g].batch * lanes_;
+            next[size_of(groups_[g].region)] = groups_[g].batch * lanes_;
         const Chunk &chunk = u_.chunks().parts[part];
         for (std::int64_t i = chunk.tet; i < chunk.tet + chunk.tets; ++i) {
-            const std::int64_t place = next[size(tets.region(i))]++;
+            const std::int64_t place = next[size_of(tets.region(i))]++;
             const std::int64_t batch = place / lanes_, lane = place % lanes_;
             const auto found_by = [&](const Chunks &chunks, std::int32_t components,
                                       std::vector<std::int32_t> &first) {
                 const std::int64_t per_tet = entities_of_tet(chunks.degree);
                 for (std::int64_t e = 0; e < per_tet; ++e)
-                    first[size((batch * per_tet + e) * lanes_ + lane)] =
-                        components * chunks.local[size(i * per_tet + e)];
+                    first[size_of((batch * per_tet + e) * lanes_ + lane)] =
+                        components * chunks.local[size_of(i * per_tet + e)];
             };
             found_by(u_.chunks(), 3, first_);
             if (p_)
@@ -107,7 +105,7 @@ template <class T> void PointwiseOperator<T>::pack(const ElasticTets &tets) {
             for (std::int64_t k = 0; k < 9; ++k)
                 geometry[k * lanes_] = static_cast<T>(shape.gradients[1 + k / 3][k % 3]);
             geometry[9 * lanes_] = static_cast<T>(shape.volume);
-            tet_[size(place)] = static_cast<std::int32_t>(tets.order[i]);
+            tet_[size_of(place)] = static_cast<std::int32_t>(tets.order[i]);
         }
     });
 }
@@ -166,9 +164,9 @@ template <class T> PointwiseBatches<T> PointwiseOperator<T>::batches(const Group
         b.entities_of_pressure = entities_of_tet(b.pressure_degree);
     }
     b.geometry = geometry_.data() + group.batch * 10 * lanes_;
-    const Law &law = laws_[size(group.region)];
+    const Law &law = laws_[size_of(group.region)];
     b.law = law_kernels_ + law.number;
-    b.parameters = parameters_[size(group.region)].data();
+    b.parameters = parameters_[size_of(group.region)].data();
     b.terms = law.terms();
     b.rule = rule_.rule();
     b.extremes = nothing_seen();
@@ -179,7 +177,7 @@ template <class T>
 double PointwiseOperator<T>::on_chunk(std::size_t part, const Work &work, std::vector<T> &scratch) {
     const std::size_t u = u_.longest(), p = p_ ? p_->longest() : 0;
     const std::int64_t batch = scratch_of_pointwise(rule_.rule().controls, lanes_);
-    scratch.resize(3 * (u + p) + size(batch) + cache_line / sizeof(T));
+    scratch.resize(3 * (u + p) + size_of(batch) + cache_line / sizeof(T));
     T *own_u = scratch.data(), *own_du = own_u + u, *own_f = own_du + u;
     T *own_p = own_f + u, *own_dp = own_p + p, *own_g = own_dp + p, *end = own_g + p;
     u_.read(part, work.at.u, own_u);
@@ -222,7 +220,7 @@ template <class T> void PointwiseOperator<T>::take_seen() {
         take(seen_, here, 0);
     for (Extreme *x : {&seen_.least_J, &seen_.greatest_exponent})
         if (x->place >= 0) {
-            x->place = tet_[size(x->place)];
+            x->place = tet_[size_of(x->place)];
             x->point = rule_.given(x->point);
         }
 }

@@ -17,16 +17,14 @@ namespace {
 
 constexpr std::size_t piece = 4096; // vertices that a thread takes at a time
 
-std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
-
 } // namespace
 
 Preconditioner::Preconditioner(const ElasticTets &tets, const std::int32_t *corners,
                                std::int64_t vertices, const std::uint8_t *fixed,
                                const Chunks &chunks, const Kernels &kernels, Team &team)
     : lanes_(kernels.lanes64), kernel_(kernels.blocks[tets.degree - 1]), team_(team), rows_{},
-      moments_from_{}, vertex_value_(size(6 * vertices)), vertex_z_(size(6 * vertices)),
-      dots_(chunks.parts.size()), vertex_dots_((size(vertices) + piece - 1) / piece),
+      moments_from_{}, vertex_value_(size_of(6 * vertices)), vertex_z_(size_of(6 * vertices)),
+      dots_(chunks.parts.size()), vertex_dots_((size_of(vertices) + piece - 1) / piece),
       scratch_(team.size()) {
     const Entities found = entities(tets.degree, tets.first, corners, tets.tets, team);
     for (const Chunk &chunk : chunks.parts) {
@@ -48,13 +46,13 @@ void Preconditioner::arrange(const Entities &entities) {
         for (std::size_t part = 0; part + 1 < range_.size(); ++part) {
             team_.ask();
             std::int64_t count = 0;
-            for (auto e = size(range_[part]); e < size(range_[part + 1]); ++e)
-                if (size(entities.all[e].dim) == dim) {
+            for (auto e = size_of(range_[part]); e < size_of(range_[part + 1]); ++e)
+                if (size_of(entities.all[e].dim) == dim) {
                     number_[dim].push_back(static_cast<std::int32_t>(e));
                     ++count;
                 }
             const std::int64_t batches = (count + lanes_ - 1) / lanes_;
-            number_[dim].resize(size((batch + batches) * lanes_), -1);
+            number_[dim].resize(size_of((batch + batches) * lanes_), -1);
             groups_[dim].push_back({count, batches, batch});
             batch += batches;
         }
@@ -68,14 +66,14 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
     for (std::size_t dim = 0; dim < 4; ++dim) {
         const std::size_t rows = blocks.rows(static_cast<int>(dim)),
                           triangle = rows * (rows + 1) / 2;
-        const std::size_t lanes = size(lanes_), all = number_[dim].size(), batches = all / lanes;
+        const std::size_t lanes = size_of(lanes_), all = number_[dim].size(), batches = all / lanes;
         rows_[dim] = static_cast<std::int64_t>(rows);
         control_[dim].resize(all);
         vertices_[dim].resize(all * (dim + 1));
         make_large(value_[dim], dim > 0 ? all * triangle : 0, team_);
         make_large(z_[dim], dim > 0 ? all * rows : 0, team_);
         moments_from_[dim] = moments;
-        moments += all * size(moments_of(static_cast<int>(dim)));
+        moments += all * size_of(moments_of(static_cast<int>(dim)));
         team_.run(batches, [&](std::size_t batch, std::size_t) {
             std::vector<double> scratch;
             std::vector<float> packed(triangle);
@@ -83,15 +81,15 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
                 const std::int32_t e = number_[dim][batch * lanes + lane];
                 if (e < 0)
                     continue;
-                const Entity &entity = entities.all[size(e)];
+                const Entity &entity = entities.all[size_of(e)];
                 control_[dim][batch * lanes + lane] =
                     entity.control - static_cast<std::int32_t>(*std::prev(
                                          std::ranges::upper_bound(control_of_, entity.control)));
                 for (std::size_t v = 0; v <= dim; ++v)
                     vertices_[dim][(batch * (dim + 1) + v) * lanes + lane] = entity.vertices[v];
-                blocks.inverse(size(e), fixed, scratch, packed.data());
+                blocks.inverse(size_of(e), fixed, scratch, packed.data());
                 float *to = dim > 0 ? value_[dim].data() + batch * triangle * lanes + lane
-                                    : vertex_value_.data() + 6 * size(entity.vertices[0]);
+                                    : vertex_value_.data() + 6 * size_of(entity.vertices[0]);
                 for (std::size_t i = 0; i < triangle; ++i)
                     to[dim > 0 ? i * lanes : i] = packed[i];
             }
@@ -104,25 +102,25 @@ void Preconditioner::fill(const ElasticTets &tets, const Entities &entities,
 
 /// Where the moments of each vertex stand, in a fixed order.
 void Preconditioner::list_moments(std::int64_t vertices) {
-    moment_start_.assign(size(vertices) + 1, 0);
+    moment_start_.assign(size_of(vertices) + 1, 0);
     const auto each = [&](const auto &visit) {
         for (std::size_t dim = 0; dim < 4; ++dim)
             in_turn(team_, number_[dim].size(), [&](std::size_t i) {
                 for (std::size_t v = 0; v <= dim && number_[dim][i] >= 0; ++v) {
-                    const std::size_t lanes = size(lanes_), batch = i / lanes, lane = i % lanes;
+                    const std::size_t lanes = size_of(lanes_), batch = i / lanes, lane = i % lanes;
                     const std::size_t corner = batch * (dim + 1) + v;
-                    const std::size_t all = size(moments_of(static_cast<int>(dim)));
-                    visit(size(vertices_[dim][corner * lanes + lane]),
+                    const std::size_t all = size_of(moments_of(static_cast<int>(dim)));
+                    visit(size_of(vertices_[dim][corner * lanes + lane]),
                           moments_from_[dim] + (batch * all + 3 * v) * lanes + lane);
                 }
             });
     };
     each([&](std::size_t vertex, std::size_t) { ++moment_start_[vertex + 1]; });
     std::partial_sum(moment_start_.begin(), moment_start_.end(), moment_start_.begin());
-    make_large(moment_, size(moment_start_.back()), team_);
+    make_large(moment_, size_of(moment_start_.back()), team_);
     std::vector<std::int64_t> at(moment_start_.begin(), moment_start_.end() - 1);
     each([&](std::size_t vertex, std::size_t where) {
-        moment_[size(at[vertex]++)] = static_cast<std::uint32_t>(where);
+        moment_[size_of(at[vertex]++)] = static_cast<std::uint32_t>(where);
     });
     for (auto &numbers : number_)
         std::vector<std::int32_t>().swap(numbers);
@@ -190,8 +188,8 @@ double Preconditioner::of_vertices(std::vector<float> &coarse) {
 /// returns their product.
 double Preconditioner::at_vertex(std::size_t vertex, float *coarse) {
     float sum[3] = {}, own[3] = {};
-    for (auto m = size(moment_start_[vertex]); m < size(moment_start_[vertex + 1]); ++m) {
-        const std::size_t at = moment_[m], lanes = size(lanes_);
+    for (auto m = size_of(moment_start_[vertex]); m < size_of(moment_start_[vertex + 1]); ++m) {
+        const std::size_t at = moment_[m], lanes = size_of(lanes_);
         for (std::size_t k = 0; k < 3; ++k)
             sum[k] += moments_[at + k * lanes];
         if (at < moments_from_[2])

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "size_of.hpp"
 #include "tet_controls.hpp"
 
 namespace bezsoma {
 
 namespace {
-
-std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
 
 constexpr int moved[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
 constexpr int character[4][4] = {{1, 1, 1, 1}, {1, 1, -1, -1}, {1, -1, 1, -1}, {1, -1, -1, 1}};
@@ -31,35 +30,35 @@ std::int32_t moved_point(std::int32_t count, const double *points, const double 
 
 /// Fours first, each in the order of the permutations, then all others.
 template <class T> void RuleTables<T>::order_points(std::int32_t count, const double *points) {
-    std::vector<bool> taken(size(count));
+    std::vector<bool> taken(size_of(count));
     for (std::int32_t q = 0; q < count; ++q) {
         std::int32_t four[4];
         for (int j = 0; j < 4; ++j)
             four[j] = moved_point(count, points, points + 4 * q, j);
-        bool whole = !taken[size(q)];
+        bool whole = !taken[size_of(q)];
         for (int j = 0; j < 4; ++j)
             for (int i = 0; i < j; ++i)
                 whole = whole && four[j] >= 0 && four[j] != four[i];
         if (!whole)
             continue;
         for (const std::int32_t p : four) {
-            taken[size(p)] = true;
+            taken[size_of(p)] = true;
             order_.push_back(p);
         }
         ++fours_;
     }
     for (std::int32_t q = 0; q < count; ++q)
-        if (!taken[size(q)])
+        if (!taken[size_of(q)])
             order_.push_back(q);
 }
 
 /// Orbits of controls, and where their sums with each character go.
 template <class T> void RuleTables<T>::order_controls(int degree) {
-    std::vector<bool> taken(size(controls_));
+    std::vector<bool> taken(size_of(controls_));
     for (int s3 = 0; s3 <= degree; ++s3)
         for (int s2 = 0; s2 <= s3; ++s2)
             for (int s1 = 0; s1 <= s2; ++s1) {
-                if (taken[size(position(s3, s2, s1))])
+                if (taken[size_of(position(s3, s2, s1))])
                     continue;
                 const int alpha[4] = {degree - s3, s3 - s2, s2 - s1, s1};
                 ControlOrbit orbit{};
@@ -68,7 +67,7 @@ template <class T> void RuleTables<T>::order_controls(int degree) {
                     const int at = position(alpha[to[1]] + alpha[to[2]] + alpha[to[3]],
                                             alpha[to[2]] + alpha[to[3]], alpha[to[3]]);
                     orbit.control[j] = at;
-                    taken[size(at)] = true;
+                    taken[size_of(at)] = true;
                 }
                 const int *at = orbit.control;
                 // What a permutation leaves in place has no part with the sign - there.
@@ -101,10 +100,10 @@ RuleTables<T>::RuleTables(int degree, std::int32_t count, const double *points,
     : controls_(bezsoma::controls(degree)) {
     order_points(count, points);
     order_controls(degree);
-    values_.resize(size(count * controls_));
+    values_.resize(size_of(count * controls_));
     tests_.resize(values_.size());
     for (std::int32_t i = 0; i < count; ++i) {
-        const std::int32_t q = order_[size(i)];
+        const std::int32_t q = order_[size_of(i)];
         weights_.push_back(static_cast<T>(weights[q]));
         for (const ControlOrbit &orbit : orbits_)
             for (int k = 0; k < 4; ++k) {
@@ -113,8 +112,8 @@ RuleTables<T>::RuleTables(int degree, std::int32_t count, const double *points,
                 double mean = 0;
                 for (int j = 0; j < 4; ++j)
                     mean += character[k][j] * values[q * controls_ + orbit.control[j]] / 4;
-                values_[size(i * controls_ + orbit.sum[k])] = static_cast<T>(mean);
-                tests_[size(orbit.sum[k] * count + i)] = static_cast<T>(mean * weights[q]);
+                values_[size_of(i * controls_ + orbit.sum[k])] = static_cast<T>(mean);
+                tests_[size_of(orbit.sum[k] * count + i)] = static_cast<T>(mean * weights[q]);
             }
     }
 }

@@ -23,14 +23,12 @@ constexpr int chebyshev_steps[] = {1, 1, 2, 2, 2, 2, 2};
 // about 3.7 times. Two or three times that, and it balances the pressure's part: fewest steps.
 double displacement_scale(int pressure_degree) { return pressure_degree < 3 ? 2.0 : 3.0; }
 
-std::size_t size(std::int64_t n) { return static_cast<std::size_t>(n); }
-
 } // namespace
 
 PressureInverse::PressureInverse(MixedOperator &form, std::vector<double> weight,
                                  std::vector<double> levels, Team &team)
     : form_(form), weight_(std::move(weight)), levels_(std::move(levels)),
-      inverse_(size(form.pressures())), divided_(inverse_.size()), x_(inverse_.size()),
+      inverse_(size_of(form.pressures())), divided_(inverse_.size()), x_(inverse_.size()),
       y_(inverse_.size()), step_(inverse_.size()), team_(team) {
     form_.on_pressure(&PressureKernel::diagonal, weight_, nullptr, inverse_.data());
     for (double &d : inverse_)
@@ -46,7 +44,7 @@ void PressureInverse::shared(const double *r, double *z) {
 }
 
 void PressureInverse::apply(const double *r, double *z) {
-    const auto degree = size(form_.pressure_degree() - 1);
+    const auto degree = size_of(form_.pressure_degree() - 1);
     const double middle = (largest[degree] + 1) / 2, reach = (largest[degree] - 1) / 2;
     shared(r, step_.data());
     each_number(team_, x_.size(), [&](std::size_t i) { z[i] = step_[i] /= middle; });
@@ -91,10 +89,10 @@ public:
     Iteration(MixedOperator &form, Search &displacement, PressureInverse &pressure,
               const SaddleProblem &problem, Team &team)
         : form_(form), displacement_(displacement), pressure_(pressure), problem_(problem),
-          team_(team), forces_(3 * size(form.controls())), all_(forces_ + size(form.pressures())),
-          of_forces_(forces_, team), of_volumes_(all_ - forces_, team),
-          weight_(problem.volume_weight * problem.volume_weight), x(all_ + padding), r(x), start(x),
-          direction(x), v(x), t(x), z(x), loaded(x), best(x) {}
+          team_(team), forces_(3 * size_of(form.controls())),
+          all_(forces_ + size_of(form.pressures())), of_forces_(forces_, team),
+          of_volumes_(all_ - forces_, team), weight_(problem.volume_weight * problem.volume_weight),
+          x(all_ + padding), r(x), start(x), direction(x), v(x), t(x), z(x), loaded(x), best(x) {}
 
     /// The sum of terms, a change of volume by how much it counts where it is: so that what the
     /// soft tets miss is not lost beside what the stiff ones do.

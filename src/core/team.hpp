@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "size_of.hpp"
+
 namespace bezsoma {
 
 /// Threads that wait between jobs: a solve hands out thousands of jobs of some 100 us.

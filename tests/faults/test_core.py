@@ -13,15 +13,24 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
-from bezsoma import _core
+from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats, Int32s
+from bezsoma.equations.assembled import assembled
 from bezsoma.equations.boundary import prescribed
 from bezsoma.equations.displacement import Equations
-from bezsoma.equations.element import lame_constants
+from bezsoma.equations.element import lame_constants, moduli
 from bezsoma.equations.matrix_free import MatrixFree, walk
 from bezsoma.equations.mixed_free import MixedFree
+from bezsoma.equations.pointwise_free import PointwiseFree
 from bezsoma.mesh import ControlNet, block
-from bezsoma.solvers.multigrid import degree_one, multigrid, preconditioner
+from bezsoma.solvers.krylov import incomplete_cholesky
+from bezsoma.solvers.multigrid import (
+    degree_one,
+    iterated,
+    multigrid,
+    preconditioned,
+    preconditioner,
+)
 from bezsoma.solvers.saddle import saddle
 from processes import prelude
 
@@ -103,9 +112,65 @@ def test_what_is_still_held_when_python_ends_is_not_spoken_of() -> None:
         "import ctypes; ctypes.pythonapi.Py_IncRef(ctypes.py_object(law))\n"
         "print(law.name)"
     )
-    command = [sys.executable, "-c", prelude() + "import bezsoma as bz\n" + held]
+    command = [sys.executable, "-S", "-c", prelude() + "import bezsoma as bz\n" + held]
     done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=100)
     assert done.stdout == "neo_hooke\n" and not done.stderr
+
+
+LEFT_AT_WORK = {
+    "solves": "bz.solve(body, threads=2)",
+    "solves with a report": "bz.solve(body, threads=1, progress=lambda *told: None)",
+    "products": "operator @ net.points",
+    "topology": "bz.block(cells=9).faces_of_tet",
+}
+
+
+@pytest.mark.parametrize("work", LEFT_AT_WORK.values(), ids=LEFT_AT_WORK)
+def test_python_ends_in_peace_while_a_thread_is_at_work(work: str) -> None:
+    """A daemon in the midst of a solve, as servers and notebooks have them; at its own pace."""
+    text = f"""
+import atexit, threading, time
+import numpy as np, bezsoma as bz
+from bezsoma.equations.matrix_free import MatrixFree
+
+net = bz.ControlNet(bz.block(cells=6), 3)
+operator = MatrixFree(net, np.array([[0.6, 0.4]]), 1)
+sides = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]
+body = bz.Body(net.mesh, 3, bz.LinearElastic(1.0, 0.3), sides)
+begun = threading.Event()
+
+def work():
+    while True:
+        {work}
+        begun.set()
+
+for _ in range(2):
+    threading.Thread(target=work, daemon=True).start()
+begun.wait()
+time.sleep(0.1)
+print("done")
+"""
+    command = [sys.executable, "-S", "-c", prelude() + text]
+    for _ in range(3):
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=100)
+        assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")
+
+
+def test_what_runs_when_python_ends_may_solve() -> None:
+    """Whatever was registered before BezSoma was imported runs after the core heard of the end."""
+    text = (
+        "import atexit\natexit.register(lambda: print(bz.solve(body).residual < 1e-8))\n"
+        + "import bezsoma as bz\n"
+        + 'sides = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]\n'
+        + "body = bz.Body(bz.block(cells=3), 2, bz.LinearElastic(1.0, 0.3), sides)\n"
+        + "bz.solve(body)"
+    )
+    # The prelude imports the core: what is registered has to stand before it.
+    first, second = text.split("\n", 2)[:2], text.split("\n", 2)[2]
+    whole = "\n".join([*first, prelude(), second])
+    command = [sys.executable, "-S", "-c", whole]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=100)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "True\n", "")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="threads are counted as on Linux")
@@ -281,3 +346,70 @@ def test_a_walk_is_used_up_by_the_preconditioner_it_makes() -> None:
     _core.Multigrid(operator.kernel, used, corners, places, held, vertices)
     with pytest.raises(ValueError, match="given its numbering to the preconditioner"):
         _core.Multigrid(operator.kernel, used, corners, places, held, vertices)
+
+
+def silent(step: int, residual: float) -> None:
+    """Nobody watches."""
+
+
+def takers() -> dict[str, Callable[[Floats], Any]]:
+    """What hands forces or displacements (c, 3) of `held(2, 3)` to the core: `TAKERS`."""
+    body = held(2, 3)
+    net, mesh = ControlNet(body.mesh, 2), body.mesh
+    fixed = prescribed(body, net).mask
+    lame = lame_constants(body)
+    operator, matrix = MatrixFree(net, lame, 1), assembled(net, *moduli(body), 1)
+    mixed = MixedFree(net, ControlNet(mesh, 1), np.array([[0.4, 0.1]]), 1)
+    some = np.sin(np.arange(mixed.pressure_net.count, dtype=float))
+    laws = PointwiseFree(net, (bz.NeoHooke(E=1.0, nu=0.3).core,), *bernstein.simplex(4, 3), 1)
+    factor, blocks = incomplete_cholesky(matrix, fixed), preconditioner(operator, fixed)
+    free = preconditioned(operator, fixed)
+    return {
+        "product": lambda x: operator @ x,
+        "product in float32": operator.single,
+        "energy": operator.energy,
+        "matrix": lambda x: matrix @ x,
+        "factor": factor,
+        "preconditioner": lambda x: free(x).astype(np.float64),
+        "multigrid": lambda x: iterated(blocks, x, 1e-8, silent)[0],
+        "from a start": lambda x: iterated(blocks, operator @ x, 1e-8, silent, start=x / 2)[0],
+        "saddle": lambda x: saddle(
+            mixed, fixed, x, 0 * some, np.zeros((0, len(some))), 1e-8, silent
+        )[0],
+        "mixed product": lambda x: mixed.apply(x, some)[0],
+        "mixed energy": lambda x: mixed.energy(x, some),
+        "law": laws.forces,
+        "energy of a law": laws.energy,
+        "tangent": lambda x: laws.tangent(0.1 * x).apply(x),
+    }
+
+
+TAKERS = (
+    *("product", "product in float32", "energy", "matrix", "factor", "preconditioner"),
+    *("multigrid", "from a start", "saddle", "mixed product", "mixed energy"),
+    *("law", "energy of a law", "tangent"),
+)
+
+
+@pytest.mark.parametrize("name", TAKERS)
+def test_arrays_of_any_layout_are_taken_for_what_they_are(name: str) -> None:
+    """In the order of Fortran, in float32, with gaps, read-only: the answer is that of plain ones.
+
+    An answer must never go to a copy that the core made of the array which it was to fill.
+    """
+    take = takers()[name]
+    body = held(2, 3)
+    net = ControlNet(body.mesh, 2)
+    x = np.where(prescribed(body, net).mask, 0.0, 0.01 * np.sin(7 * net.points))
+    x = x.astype(np.float32).astype(np.float64)
+    expected = np.asarray(take(x))
+    assert expected.any()
+    gaps = np.zeros((net.count, 6))
+    gaps[:, ::2] = x
+    locked = x.copy()
+    locked.flags.writeable = False
+    for given in (np.asfortranarray(x), gaps[:, ::2], locked):
+        assert np.asarray(take(given)).tobytes("C") == expected.tobytes()
+    if name != "preconditioner":  # of float32 it answers in float32
+        single = np.asarray(take(x.astype(np.float32)))
+        np.testing.assert_allclose(single, expected, rtol=1e-5, atol=1e-5 * abs(expected).max())

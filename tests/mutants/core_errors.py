@@ -339,10 +339,17 @@ CORE_ERRORS = (
         MESHES,
     ),
     Mutant(
+        "threads that ask for Python's interpreter when it has ended",
+        f"{CORE}/bindings_interpreter.hpp",
+        "closed_ = true;",
+        "closed_ = false;",
+        TEAM,
+    ),
+    Mutant(
         "parts joined by faces that are not found to be one",
         f"{CORE}/topology.cpp",
-        "parent[size(std::max(a, b))] = std::min(a, b);",
-        "parent[size(pairs[2 * f + 1])] = pairs[2 * f];",
+        "parent[size_of(std::max(a, b))] = std::min(a, b);",
+        "parent[size_of(pairs[2 * f + 1])] = pairs[2 * f];",
         (*MESHES, "tests/faults/test_rigid_motions.py"),
     ),
     Mutant(
@@ -475,14 +482,14 @@ CORE_ERRORS = (
     Mutant(
         "all regions of a chunk with the parameters of the first",
         f"{CORE}/pointwise_operator.cpp",
-        "b.parameters = parameters_[size(group.region)].data();",
+        "b.parameters = parameters_[size_of(group.region)].data();",
         "b.parameters = parameters_[0].data();",
         POINTWISE,
     ),
     Mutant(
         "the place of the least J by the number of a batch",
         f"{CORE}/pointwise_operator.cpp",
-        "x->place = tet_[size(x->place)];",
+        "x->place = tet_[size_of(x->place)];",
         "x->place = x->place / lanes_;",
         POINTWISE,
     ),

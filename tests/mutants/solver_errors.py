@@ -49,8 +49,8 @@ BLOCKS = (
         MULTIGRID,
         (
             "couplings with one binomial for another",
-            "product *= choose(x[v] + y[v], x[v]);",
-            "product *= choose(x[v] + y[v], 1);",
+            "product *= combinations(x[v] + y[v], x[v]);",
+            "product *= combinations(x[v] + y[v], 1);",
         ),
         (
             "blocks with the factor n in place of n^2",

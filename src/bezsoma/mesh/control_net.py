@@ -27,6 +27,7 @@ from bezsoma.mesh.topology import numbers as numbers_among
 from bezsoma.mesh.topology import slices
 
 LARGEST_DEGREE = 10
+MOST_CONTROLS = 2**31 - 1
 EDGES_OF_FACES = np.array([(3, 4, 5), (1, 2, 5), (0, 2, 4), (0, 1, 3)])
 """The local edges (01), (02), (12) of each local face of a tet."""
 CHUNK = 1 << 16
@@ -97,6 +98,11 @@ class ControlNet:
 
         Only of the kinds that hold controls inside, as in `starts`; tets in the order `morton`.
         """
+        if self.count > MOST_CONTROLS:
+            raise InputError(
+                f"{self.count} controls of degree {self.degree} are more than the {MOST_CONTROLS} "
+                "that are counted in 32 bits; take a lower degree or a coarser mesh"
+            )
         parts = sum((4, 6, 4, 1)[: len(self._dims(3))])
         first = np.empty((len(self.mesh.tets), parts), np.int32)
         for part in slices(len(first)):
