@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bezsoma import control_groups
 from bezsoma.equations.stress import swelling
 from bezsoma.errors import InputError
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, NeoHooke
@@ -222,8 +223,8 @@ def test_what_a_control_group_leaves(
         (tmp_path / name).write_text(text)
     own = tmp_path / "own"
     own.write_text("1:name=systemd:/\n2:cpu,memory:/x\n3:memory:/job\n0::/job/step\n")
-    monkeypatch.setattr(memory, "GROUPS", tmp_path)
-    monkeypatch.setattr(memory, "OWN_GROUPS", own)
+    monkeypatch.setattr(control_groups, "GROUPS", tmp_path)
+    monkeypatch.setattr(control_groups, "OWN_GROUPS", own)
     there = memory.available()
     assert there == left if left is not None else there is not None and there > 2**26
 

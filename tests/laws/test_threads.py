@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
-from bezsoma import _core, bernstein
+from bezsoma import _core, bernstein, control_groups
 from bezsoma.arrays import Floats
 from bezsoma.equations.assembled import assembled
 from bezsoma.equations.boundary import prescribed
@@ -26,6 +26,7 @@ from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.equations.mixed_pointwise_free import PointwiseMixed
 from bezsoma.equations.pointwise_free import PointwiseFree
+from bezsoma.equations.threads import cores, quota
 from bezsoma.errors import InputError
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, Precedence, Traction
 from bezsoma.mesh import ControlNet, TetMesh, block
@@ -345,12 +346,100 @@ def test_the_environment_is_heard_and_the_argument_before_it(
     assert "3 threads" in solve(body, solver="multigrid").method
     assert "2 threads" in solve(body, solver="multigrid", threads=2).method
     assert "2 threads" in solve(body, solver="multigrid", threads=np.int64(2)).method
-    cores = os.cpu_count()
-    assert f"{cores} thread" in solve(body, solver="multigrid", threads=0).method
+    assert f"{cores()} thread" in solve(body, solver="multigrid", threads=0).method
     monkeypatch.setenv("BEZSOMA_THREADS", "\t0002\n")
     assert "2 threads" in solve(body, solver="multigrid").method
     monkeypatch.setenv("BEZSOMA_THREADS", "")  # as a shell leaves what it empties
-    assert f"{cores} thread" in solve(body, solver="multigrid").method
+    assert f"{cores()} thread" in solve(body, solver="multigrid").method
+
+
+QUOTAS = {
+    "none": ({"cpu.max": "max 100000"}, 1024),
+    "version 2": ({"cpu.max": "250000 100000"}, 3),
+    "version 2, above": ({"cpu.max": "100000 100000", "job/step/cpu.max": "max 100000"}, 1),
+    "version 2, own": ({"job/step/cpu.max": "50000 100000"}, 1),
+    "version 1": ({"cpu/job/cpu.cfs_quota_us": "400000", "cpu/job/cpu.cfs_period_us": "200000"}, 2),
+    "version 1, none": ({"cpu/cpu.cfs_quota_us": "-1", "cpu/cpu.cfs_period_us": "100000"}, 1024),
+    "nothing readable": ({"cpu.max": "much"}, 1024),
+}
+
+
+@pytest.mark.parametrize(("files", "allowed"), QUOTAS.values(), ids=QUOTAS)
+def test_all_cores_are_those_that_there_is_time_for(
+    files: dict[str, str], allowed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A container or a batch job may have fewer than the machine: more threads wait for turns."""
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text + "\n")
+    own = tmp_path / "own"
+    own.write_text("1:name=systemd:/\n2:cpu,cpuacct:/job\n0::/job/step\n")
+    monkeypatch.setattr(control_groups, "GROUPS", tmp_path)
+    monkeypatch.setattr(control_groups, "OWN_GROUPS", own)
+    quota.cache_clear()
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(7)), raising=False)
+    try:
+        assert (quota(), cores()) == (allowed, min(allowed, 7))
+    finally:
+        quota.cache_clear()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="cores are chosen as on Linux")
+def test_all_cores_are_those_that_the_process_may_use() -> None:
+    text = (
+        "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})\n"
+        "import numpy as np, bezsoma as bz\n"
+        "from bezsoma.equations.matrix_free import MatrixFree\n"
+        "net = bz.ControlNet(bz.block(cells=4), 3)\n"
+        "print(MatrixFree(net, np.ones((1, 2))).kernel.threads)"
+    )
+    command = [sys.executable, "-S", "-c", prelude() + text]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=100)
+    assert done.stdout == "1\n"
+
+
+MOST_TASKS = """
+import os, threading, time, bezsoma as bz
+
+def tasks():
+    return len(os.listdir("/proc/self/task"))
+
+most, done = 0, False
+
+def look():
+    global most
+    while not done:
+        most = max(most, tasks())
+        time.sleep(1e-4)
+
+sides = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]
+law = bz.LinearElastic(1.0, 0.3)
+bodies = {
+    method: bz.Body(bz.block(cells=cells), 2, law, sides, incompressible=method == "saddle")
+    for method, cells in (("cg", 9), ("direct", 5), ("multigrid", 9), ("saddle", 5))
+}
+for method, body in bodies.items():
+    bz.solve(body, solver=method, threads=1)  # what is imported may bring threads of a BLAS
+    time.sleep(0.1)  # what has ended may be counted for a while
+    before, most, done = tasks(), 0, False
+    watcher = threading.Thread(target=look)
+    watcher.start()
+    for _ in range(5):
+        bz.solve(body, solver=method, threads=1)
+    done = True
+    watcher.join()
+    print(method, most - before - 1)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="threads are counted as on Linux")
+def test_no_solver_takes_more_threads_than_it_was_given() -> None:
+    """None where one was; a direct one has others that wait for what another process factors."""
+    command = [sys.executable, "-S", "-c", prelude() + MOST_TASKS]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+    most = {name: int(count) for name, count in map(str.split, done.stdout.splitlines())}
+    assert most.pop("direct") <= 2
+    assert len(most) == 3 and max(most.values()) <= 0
 
 
 def test_the_case_file_says_how_many(tmp_path: Path) -> None:

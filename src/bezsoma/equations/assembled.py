@@ -22,12 +22,13 @@ class BlockMatrix:
 
     starts (c + 1,) int64, columns (blocks,) int32, blocks (blocks, 3, 3) N/mm. The starts are
     64 bits wide since a million controls of high degree have more than 2^31 entries; the columns
-    are not, since they count controls.
+    are not, since they count controls. `threads` are those of a product.
     """
 
     starts: Ints
     columns: npt.NDArray[np.int32]
     blocks: Floats
+    threads: int = 1
 
     @property
     def controls(self) -> int:
@@ -36,8 +37,8 @@ class BlockMatrix:
 
     def __matmul__(self, x: Floats) -> Floats:
         """K x (c, 3) N for x (c, 3) mm; the same bits for any number of threads."""
-        y = np.empty((self.controls, 3))
-        _core.multiply(self.starts, self.columns, self.blocks, np.ascontiguousarray(x), y)
+        y, x = np.empty((self.controls, 3)), np.ascontiguousarray(x)
+        _core.multiply(self.starts, self.columns, self.blocks, x, y, self.threads)
         return y
 
     @property
@@ -75,4 +76,4 @@ def assembled(net: ControlNet, lam: Floats, mu: Floats, threads: int = 0) -> Blo
     starts, columns = pattern(net.of_tet, net.count)
     tets = (mesh.gradients, mesh.volumes, lam, mu)
     blocks = _core.assembled(net.degree, net.of_tet, *tets, starts, columns, number)
-    return BlockMatrix(frozen(starts), frozen(columns), frozen(blocks))
+    return BlockMatrix(frozen(starts), frozen(columns), frozen(blocks), number)

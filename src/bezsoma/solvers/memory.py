@@ -4,19 +4,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb
 from pathlib import Path
 
+from bezsoma.control_groups import groups
 from bezsoma.errors import InputError
 from bezsoma.mechanics.body import Body
 from bezsoma.mesh.tets import TetMesh
 from bezsoma.solvers.gmres import KEPT
-
-GROUPS = Path("/sys/fs/cgroup")
-OWN_GROUPS = Path("/proc/self/cgroup")
 
 
 def estimate(
@@ -193,23 +190,8 @@ def _kernel_says() -> int | None:
 
 def _groups_allow() -> int | None:
     """The least that the control groups (of a container, of a batch job) leave of their limits."""
-    left = [room for folder in _groups() if (room := _room(folder)) is not None]
+    left = [room for folder in groups("memory") if (room := _room(folder)) is not None]
     return min(left, default=None)
-
-
-def _groups() -> Iterator[Path]:
-    """The folders of the groups that this process is in, of either version, and of those above."""
-    yield from (GROUPS, GROUPS / "memory")
-    try:
-        lines = OWN_GROUPS.read_text().splitlines()
-    except OSError:
-        return
-    for line in lines:
-        _, kinds, path = line.split(":", 2)
-        if kinds in ("", "memory"):
-            root = GROUPS / kinds
-            own = root / path.lstrip("/")
-            yield from (folder for folder in (own, *own.parents) if root in folder.parents)
 
 
 _FILES = (
