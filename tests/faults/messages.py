@@ -61,6 +61,7 @@ class Notes:
         text = re.sub(r"/[^\s']*/pytest-\d+/(?:[^/\s']+/)?", "", message.strip())
         text = text.replace(f"{ROOT}/", "").replace(str(Path(sys.prefix)), "...")
         test = os.environ["PYTEST_CURRENT_TEST"].rsplit(" (", 1)[0].removeprefix("tests/faults/")
+        text = re.sub(r"\(process \d+\)", "(process 4711)", text)
         self.found[Fault(test, re.sub(r" at 0x[0-9a-f]+", "", text))] = None
 
     def listen(self, patch: pytest.MonkeyPatch) -> None:

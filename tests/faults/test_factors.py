@@ -29,7 +29,7 @@ import pickle, sys, time
 from pathlib import Path
 pickle.load(sys.stdin.buffer)
 Path(__file__).with_suffix(".begun").touch()
-time.sleep(600)
+time.sleep(60)
 """
 
 
@@ -157,6 +157,39 @@ def test_a_process_that_the_system_ends_is_told(
     for name, other in (("elastic", "multigrid"), ("mixed", "saddle")):
         with pytest.raises(InputError, match=f"can hold or count; use solver='{other}'"):
             solve(BODIES[name], solver="direct")
+
+
+FACTORS_ONLY = """
+import pickle, sys
+pickle.load(sys.stdin.buffer)
+pickle.dump(None, sys.stdout.buffer)
+sys.stdout.flush()
+pickle.load(sys.stdin.buffer)
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "other"), [("elastic", "multigrid"), ("mixed", "saddle"), ("nonlinear", "multigrid")]
+)
+def test_a_process_that_ends_once_it_has_factored_is_told(
+    name: str, other: str, apart: list[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    script = tmp_path / "half.py"
+    script.write_text(FACTORS_ONLY)
+    monkeypatch.setattr(factors, "APART", script)
+    with pytest.raises(InputError, match=f"can hold or count; use solver='{other}'"):
+        solve(BODIES[name], solver="direct")
+    assert apart[-1].returncode is not None
+
+
+def test_a_matrix_that_is_singular_to_rounding_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def singular(*given: Any, **options: Any) -> None:
+        raise RuntimeError("Factor is exactly singular")
+
+    monkeypatch.setattr(sys.modules["bezsoma.solvers.direct"], "factored", singular)
+    with pytest.raises(NotConverged, match="unknowns is singular to rounding") as caught:
+        solve(BODIES["elastic"], solver="direct")
+    assert caught.value.history == (1.0,)
 
 
 @pytest.mark.usefixtures("for_ever")

@@ -206,31 +206,48 @@ HARD_ONES: dict[str, tuple[Callable[[int], Body], tuple[int, ...]]] = {
     "a force on a point": (pushed_at_a_point, (1, 4)),
 }
 
-MOST_STEPS = {
-    "a layer 1e4 stiffer": 60,
-    "a core 1e4 stiffer": 80,
-    "a core 1e4 softer": 52,
-    "checkers of 1e4": 68,
-    "slivers": 324,
-    "squeezed": 148,
-    "pieces": 83,
-    "8 tets": 84,
+STEPS = {
+    "nu of 0.45": (2, 67, 101),
+    "nu of 0.49": (2, 137, 203),
+    "nu of 0.499": (378, 575),
+    "nu of -0.9": (2, 54),
+    "a layer 1e4 stiffer": (11, 54, 68),
+    "a core 1e4 stiffer": (14, 72, 92),
+    "a core 1e4 softer": (11, 47, 55),
+    "checkers of 1e4": (11, 61, 81),
+    "a flat block": (103, 1180, 1406),
+    "a shell of tissue": (122, 1961, 2933),
+    "slivers": (30, 298, 681),
+    "squeezed": (22, 134),
+    "pieces": (17, 75, 107),
+    "8 tets": (2, 76, 178, 373),
+    "one tet": (2, 8, 72, 175),
+    "supports at vertices": (2, 70, 126),
+    "supports on edges": (2, 83, 124),
+    "supports by components": (28, 121, 192),
+    "all but few held": (2, 25, 47),
+    "a force on a point": (2, 116),
 }
-"""At degree 2: a tenth more than were counted, for sums that other instruction sets round."""
+"""Steps that were counted at those degrees, 2026-12-01."""
 
 
 @pytest.mark.parametrize(
-    ("kind", "degree"), [(kind, n) for kind, (_, all_of) in HARD_ONES.items() for n in all_of]
+    ("kind", "degree", "steps"),
+    [
+        (kind, degree, steps)
+        for kind, (_, degrees) in HARD_ONES.items()
+        for degree, steps in zip(degrees, STEPS[kind], strict=True)
+    ],
 )
-def test_hard_ones_agree_with_the_direct_solver(kind: str, degree: int) -> None:
+def test_hard_ones_agree_with_the_direct_solver(kind: str, degree: int, steps: int) -> None:
+    """In as many steps as were counted, or a twentieth more: instruction sets round otherwise."""
     body = HARD_ONES[kind][0](degree)
     exact = solve(body, solver="direct")
     found = solve(body, solver="multigrid")
     assert found.residual <= 1e-8 * (1 + 1e-6)
     assert apart(found, exact) < HARD
     assert found.energy == pytest.approx(exact.energy, rel=HARD)
-    if degree == 2 and kind in MOST_STEPS:
-        assert found.iterations <= MOST_STEPS[kind]
+    assert found.iterations <= 1.05 * steps + 2
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e6])
@@ -279,6 +296,49 @@ def test_what_cannot_converge_says_so_with_its_history() -> None:
     assert all(np.isfinite(error.history))
     # what is told at the end is true, and no float64 residual is much smaller than rounding
     assert 1e-18 < error.history[-1] < 1e-12
+
+
+@pytest.mark.parametrize("solver", ["multigrid", "direct", "cg"])
+def test_a_larger_rtol_is_advised_where_it_helps(solver: str) -> None:
+    """1 - 2 nu is a few units in the last place: what is left is of the size of the residual."""
+    load = [Traction("top", value=(0.01, 0, 0))]
+    body = Body(block(cells=3), 3, LinearElastic(1.0, 0.5 - 1e-15), [Fixed("bottom")], load)
+    with pytest.raises(NotConverged, match=r"nu (very )?close to 1/2") as caught:
+        solve(body, solver=solver)
+    left = caught.value.history[-1]
+    assert left > 1e-2 or solver == "cg"
+    assert ("larger rtol" in str(caught.value)) == (left < 1e-2)
+
+
+def test_auto_says_where_iterations_came_no_farther() -> None:
+    """Beside a material 1e40 times softer the first direction already has no energy."""
+    plain = block(cells=3)
+    soft = (plain.points[plain.tets].mean(axis=1)[:, 2] > 0.5).astype(int)
+    mesh = TetMesh(plain.points, plain.tets, soft, ("hard", "soft"), surfaces=plain.surfaces)
+    laws = {"hard": LinearElastic(1.0, 0.3), "soft": LinearElastic(1e-40, 0.3)}
+    found = solve(Body(mesh, 1, laws, ENDS), rtol=1e-6)
+    assert "since iterations came no farther than" in found.method
+
+
+@pytest.mark.parametrize("mixed", [False, True])
+def test_a_region_without_tets_changes_nothing(mixed: bool) -> None:
+    """Its law scales neither preconditioner nor residual: laws may be given for a whole atlas."""
+    plain = block(cells=3)
+
+    def found(stiff: float) -> Solution:
+        mesh = TetMesh(
+            plain.points,
+            plain.tets,
+            np.zeros(len(plain.tets), int),
+            ("tissue", "nowhere"),
+            surfaces=plain.surfaces,
+        )
+        laws = {"tissue": LinearElastic(0.01, 0.49), "nowhere": LinearElastic(stiff, 0.3)}
+        return solve(Body(mesh, 2, laws, ENDS, incompressible=mixed))
+
+    alike, other = found(0.01), found(1e60)
+    assert other.history == alike.history
+    assert other.displacement.controls.tobytes() == alike.displacement.controls.tobytes()
 
 
 def test_too_few_iterations_say_so(monkeypatch: pytest.MonkeyPatch) -> None:

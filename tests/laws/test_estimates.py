@@ -14,7 +14,7 @@ import tolerances
 from bezsoma.arrays import Floats
 from bezsoma.equations.forces import forces
 from bezsoma.equations.matrix_free import MatrixFree
-from bezsoma.errors import InputError
+from bezsoma.errors import InputError, NotConverged
 from bezsoma.mechanics import Fixed, LinearElastic, Moved, PointForce, Precedence, Prescribed
 from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.hyperelastic import NeoHooke
@@ -263,6 +263,17 @@ def test_the_highest_degrees_are_refused() -> None:
     body = Body(block(), 9, LinearElastic(E=1.0, nu=0.3), [Fixed("bottom")], [LOAD])
     with pytest.raises(InputError, match="degree 11"):
         energy_estimate(solve(body))
+
+
+def test_an_error_that_no_iteration_finds_is_said() -> None:
+    """The solution was factored, which no estimate is: it may not be told to take that solver."""
+    body = Body(block(cells=4), 1, LinearElastic(E=1.0, nu=0.4999999), [Fixed("bottom")], [LOAD])
+    solution = solve(body, solver="direct", rtol=1e-6)
+    with pytest.raises(NotConverged, match="iterations left") as said:
+        goal_estimate(solution, TOP)
+    assert "incompressible=True" in str(said.value)
+    assert "direct" not in str(said.value)
+    assert said.value.history[0] == 1
 
 
 def test_what_has_no_finite_energy_is_said() -> None:

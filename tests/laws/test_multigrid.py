@@ -23,8 +23,10 @@ from bezsoma.solvers import solve
 from bezsoma.solvers.multigrid import preconditioned, preconditioner
 from tolerances import ENERGY_NORM
 
-ITERATIONS = {2: 53, 3: 61, 4: 69, 5: 86, 6: 107}
+DESIGNED = {2: 53, 3: 61, 4: 69, 5: 86, 6: 107}
 """Steps to 1e-8 at nu = 0.3 on the cube below, as the design has them."""
+COUNTED = {2: 44, 3: 53, 4: 65, 5: 80, 6: 96, 7: 112, 8: 131, 9: 148, 10: 166}
+"""Steps that were counted on it, 2026-12-01."""
 FLAT = 1.10
 """How far steps may grow when the mesh is refined."""
 CLOSE = 1e-10
@@ -220,12 +222,23 @@ def elevated_hats(net: ControlNet) -> Floats:
     return hats
 
 
-@pytest.mark.parametrize("degree", ITERATIONS)
+@pytest.mark.parametrize("degree", DESIGNED)
 def test_steps_are_few_and_do_not_grow_with_the_mesh(degree: int) -> None:
     sizes = (8, 16) if degree == 2 else (8, 12) if degree == 3 else (4, 8)
     steps = [solve(cube(degree, cells), solver="multigrid").iterations for cells in sizes]
-    assert max(steps) <= ITERATIONS[degree]
+    assert max(steps) <= DESIGNED[degree]
     assert steps[1] <= FLAT * steps[0]
+
+
+@pytest.mark.parametrize("degree", COUNTED)
+def test_steps_do_not_grow_unseen(degree: int) -> None:
+    """By no more than 3 %: other instruction sets round otherwise, and end a step sooner or later.
+
+    What a term of the preconditioner gives is a tenth at some degrees.
+    """
+    cells = 8 if degree < 4 else 4
+    steps = solve(cube(degree, cells), solver="multigrid").iterations
+    assert 0.9 * COUNTED[degree] <= steps <= 1.03 * COUNTED[degree] + 1
 
 
 def test_steps_at_degree_one_hardly_grow() -> None:

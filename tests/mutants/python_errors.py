@@ -14,8 +14,6 @@ MATRIX_FREE = ("tests/laws/test_matrix_free.py",)
 FACTORS = ("tests/faults/test_factors.py",)
 MULTIGRID = ("tests/laws/test_multigrid.py",)
 LOADS = ("tests/laws/test_loads.py", "tests/paper/test_equations.py")
-MIXED = ("tests/laws/test_mixed.py",)
-PRESSURE = ("tests/paper/test_mixed_equations.py", "tests/twins/test_taylor_hood.py")
 SOLVES = ("src/bezsoma/equations", "src/bezsoma/solvers", "tests/paper/test_equations.py")
 
 KEPT = ("tests/laws/test_kept.py",)
@@ -483,108 +481,38 @@ PYTHON = (
         FACTORS,
     ),
     Mutant(
+        "a thread for each core of the machine, whatever the process may use",
+        f"{EQUATIONS}/threads.py",
+        "        mine = len(os.sched_getaffinity(0))",
+        "        pass",
+        ("tests/laws/test_threads.py",),
+    ),
+    Mutant(
+        "a product of a matrix on all cores",
+        f"{EQUATIONS}/assembled.py",
+        "blocks, x, y, self.threads)",
+        "blocks, x, y)",
+        ("tests/laws/test_threads.py",),
+    ),
+    Mutant(
+        "an answer in the order of its right-hand side",
+        f"{SOLVERS}/krylov.py",
+        "z = np.empty(r.shape)",
+        "z = np.empty_like(r)",
+        ("tests/faults/test_core.py",),
+    ),
+    Mutant(
+        "a region without tets that scales the preconditioner",
+        f"{EQUATIONS}/matrix_free.py",
+        "rows[np.bincount(region, minlength=len(rows)) > 0]",
+        "rows",
+        ("tests/faults/test_hard_problems.py",),
+    ),
+    Mutant(
         "a number of threads in the environment that goes unheard",
         f"{SOLVERS}/solve.py",
         'os.environ.get("BEZSOMA_THREADS") or "0" if asked is None else asked',
         "0 if asked is None else asked",
         ("tests/laws/test_threads.py::test_the_environment_is_heard_and_the_argument_before_it",),
-    ),
-    Mutant(
-        "a level of the pressure that is never open",
-        f"{EQUATIONS}/level.py",
-        "out = parts.flux[np.flatnonzero(~held.ravel())] / size",
-        "out = parts.flux / size",
-        MIXED,
-    ),
-    Mutant(
-        "compressible tissue that does not determine a level",
-        f"{EQUATIONS}/level.py",
-        "rigid = np.setdiff1d(label, label[soft])",
-        "rigid = np.unique(label)",
-        MIXED,
-    ),
-    Mutant(
-        "a net flux that goes unseen",
-        f"{EQUATIONS}/level.py",
-        "if abs(flux) > FLUX * whole:",
-        "if abs(flux) > 1e6 * FLUX * whole:",
-        ("tests/faults/test_mixed.py",),
-    ),
-    Mutant(
-        "a mean that counts controls in place of volume",
-        f"{EQUATIONS}/level.py",
-        "means = np.repeat(net.mesh.volumes / m, m)",
-        "means = np.full(net.of_tet.size, 1.0)",
-        ("tests/laws/test_mixed.py", "tests/twins/test_taylor_hood.py"),
-    ),
-    Mutant(
-        "a deviatoric strain that keeps half of the volume",
-        f"{EQUATIONS}/mixed.py",
-        "np.stack([-2 / 3 * G, G], axis=1)",
-        "np.stack([-1 / 2 * G, G], axis=1)",
-        PRESSURE,
-    ),
-    Mutant(
-        "a pressure that is positive in tension",
-        f"{EQUATIONS}/mixed.py",
-        "weights = -mesh.volumes[tets, None, None] * mesh.gradients[tets]",
-        "weights = mesh.volumes[:, None, None] * mesh.gradients",
-        PRESSURE,
-    ),
-    Mutant(
-        "kappa where its reciprocal belongs",
-        f"{MECHANICS}/materials.py",
-        "return 3 * (1 - 2 * self.nu) / self.E",
-        "return 3 * (1 - self.nu) / self.E",
-        PRESSURE,
-    ),
-    Mutant(
-        "a pressure that pulls",
-        f"{EQUATIONS}/stress.py",
-        "law.deviatoric_stress(H[here]) - p[here][..., None, None] * np.eye(3)",
-        "law.deviatoric_stress(H[here]) + p[here][..., None, None] * np.eye(3)",
-        PRESSURE,
-    ),
-    Mutant(
-        "the second order of a volume change with the wrong sign",
-        f"{EQUATIONS}/volume.py",
-        "trace + (trace**2 - square) / 2 + cubic",
-        "trace - (trace**2 - square) / 2 + cubic",
-        MIXED,
-    ),
-    Mutant(
-        "pairs of equal degree let through",
-        f"{MECHANICS}/pairs.py",
-        "if not 1 <= given <= degree - 1:",
-        "if not 1 <= given <= degree:",
-        ("tests/faults/test_mixed.py",),
-    ),
-    Mutant(
-        "tets locked that are not looked at",
-        f"{EQUATIONS}/locked.py",
-        "return np.flatnonzero(whole[net.of_vertices(net.mesh.tets)].all(axis=1))",
-        "return np.flatnonzero(whole[net.of_vertices(net.mesh.tets[:, :0])].any(axis=1))",
-        ("tests/laws/test_mixed.py", "tests/faults/test_mixed.py"),
-    ),
-    Mutant(
-        "held tets looked at one by one",
-        f"{EQUATIONS}/locked.py",
-        "links = np.concatenate([free[net.of_tet[tets]], own[pressures.of_tet[tets]]], axis=1)",
-        "links = np.concatenate([free[net.of_tet[tets]], own[pressures.of_tet[tets]]], axis=1) & 0",
-        ("tests/laws/test_mixed.py",),
-    ),
-    Mutant(
-        "a torn mesh that holds together",
-        "src/bezsoma/mesh/torn.py",
-        "keys = mesh.tets * len(mesh.regions) + mesh.region[:, None]",
-        "keys = mesh.tets * len(mesh.regions)",
-        ("tests/laws/test_mixed.py", "tests/cases/test_incompressible.py"),
-    ),
-    Mutant(
-        "fluxes scaled for their size and not scaled back",
-        f"{EQUATIONS}/level.py",
-        "_plain(modes / size[:, None])",
-        "_plain(modes)",
-        MIXED,
     ),
 )

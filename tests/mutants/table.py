@@ -3,8 +3,8 @@
 
 `old` stands exactly once in `file`; `tests` are what pytest is given, the quick ones that should
 notice. Add one with every new formula to the table of its kind: python_errors.py,
-picture_errors.py, refinement_errors.py, surface_errors.py; core_errors.py, kernel_errors.py,
-solver_errors.py. Run with ./dev mutants.
+mixed_errors.py, picture_errors.py, refinement_errors.py, surface_errors.py; core_errors.py,
+kernel_errors.py, solver_errors.py. Run with ./dev mutants.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 from mutants import python_errors
 from mutants.core_errors import CORE_ERRORS
 from mutants.kernel_errors import KERNELS
+from mutants.mixed_errors import MIXING
 from mutants.mutant import Mutant
 from mutants.picture_errors import PICTURES
 from mutants.refinement_errors import REFINING
@@ -20,7 +21,7 @@ from mutants.surface_errors import SURFACES
 
 __all__ = ["ALL", "CPP", "IN_CI", "PYTHON", "Mutant"]
 
-PYTHON = (*python_errors.PYTHON, *REFINING, *PICTURES, *SURFACES)
+PYTHON = (*python_errors.PYTHON, *MIXING, *REFINING, *PICTURES, *SURFACES)
 CPP = (*CORE_ERRORS, *KERNELS, *SOLVERS)
 IN_CI = (*PYTHON[::4], *MATRICES)
 """A choice that takes minutes; the verdicts on all are recorded, see record.py."""

@@ -71,6 +71,12 @@ class MatrixFree:
         """The kernels and how many threads, to be read: "avx512, 2 threads"."""
         return f"{self.kernel.instructions}, {counted(self.kernel.threads, 'thread')}"
 
+    @property
+    def stiffest(self) -> float:
+        """The largest lambda or mu in size that a tet has [MPa]."""
+        rows = met(self.lame, self._regions()) if len(self.lame) > 1 else self.lame
+        return float(np.abs(rows).max())
+
     def walk(self, unit: float = 1.0, first: Int32s | None = None) -> _core.Walk:
         """The tets in the order in which they numbered the controls, as the core takes them.
 
@@ -165,6 +171,15 @@ def _rows(x: npt.ArrayLike, kind: npt.DTypeLike) -> tuple[npt.NDArray[Any], tupl
             "after the other, or as two sides (c, 3, 2)"
         )
     return np.ascontiguousarray(given, dtype=kind).reshape(len(given), 3, -1), given.shape
+
+
+def met(rows: Floats, region: Ints) -> Floats:
+    """Of rows (regions, m) those whose regions have tets; region (t,).
+
+    >>> met(np.array([[1.0], [1e9], [2.0]]), np.array([0, 2, 2])).tolist()
+    [[1.0], [2.0]]
+    """
+    return rows[np.bincount(region, minlength=len(rows)) > 0]
 
 
 def walk(

@@ -10,7 +10,7 @@ import numpy as np
 
 from bezsoma import _core
 from bezsoma.arrays import Floats, plain
-from bezsoma.equations.matrix_free import walk
+from bezsoma.equations.matrix_free import met, walk
 from bezsoma.equations.threads import thread_count
 from bezsoma.mesh.control_net import ControlNet
 
@@ -80,6 +80,11 @@ class MixedFree:
             thread_count(self.threads),
             self.instructions,
         )
+
+    @property
+    def stiffest(self) -> float:
+        """The largest G that a tet has [MPa]."""
+        return float(met(self.moduli, self.net.mesh.region)[:, 0].max())
 
     def apply(self, u: Floats, p: Floats) -> tuple[Floats, Floats]:
         """Forces (c, 3) N and changes of volume (cp,) mm3."""

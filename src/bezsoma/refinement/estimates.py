@@ -92,6 +92,9 @@ def energy_estimate(
         solution: what `solve` gave; degrees up to 8.
         richer: `raised(solution)`, where it is at hand; several estimates may share it.
         threads: as in `solve`.
+
+    Raises:
+        NotConverged: where iterations do not find the error, as next to nu = 1/2.
     """
     start = perf_counter()
     richer = raised(solution, threads=threads) if richer is None else richer
@@ -148,6 +151,9 @@ def goal_estimate(
         goal: the mean that is wanted; a point is refused, saying why.
         richer: `raised(solution)`, where it is at hand; several estimates may share it.
         threads: as in `solve`.
+
+    Raises:
+        NotConverged: where iterations do not find the error, as next to nu = 1/2.
     """
     start = perf_counter()
     goal = goal_checked(goal, solution.body.mesh)
@@ -170,6 +176,9 @@ def vector_estimate(
         place: a goal, the direction of which does not matter.
         richer: `raised(solution)`, where it is at hand; several estimates may share it.
         threads: as in `solve`.
+
+    Raises:
+        NotConverged: where iterations do not find the error, as next to nu = 1/2.
     """
     start = perf_counter()
     place = goal_checked(place, solution.body.mesh)

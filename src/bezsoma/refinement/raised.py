@@ -19,7 +19,7 @@ from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.mixed import mixed_moduli
 from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.equations.nonlinear import nonlinear_equations
-from bezsoma.errors import InputError
+from bezsoma.errors import InputError, NotConverged, counted
 from bezsoma.mechanics.body import HIGHEST_DEGREE, Body
 from bezsoma.mesh.control_net import ControlNet
 from bezsoma.mesh.torn import pressure_net
@@ -246,7 +246,11 @@ class _Applied:
         size = float(np.abs(right).max())
         if size == 0:
             return Correction(np.zeros_like(b), 0)
-        x, history = iterated(self.blocks, right / size, rtol, _silent)
+        try:
+            x, history = iterated(self.blocks, right / size, rtol, _silent)
+        except NotConverged as stopped:
+            helps = "Body(..., incompressible=True) where nu is close to 1/2, "
+            raise _unfound(stopped, self.operator.net.degree, helps) from stopped
         return Correction(x.ravel() * size, len(history) - 1)
 
 
@@ -275,8 +279,22 @@ class _AppliedSaddle:
             return Correction(np.zeros_like(b), 0)
         f, g = b[: self.split].reshape(-1, 3) / size, b[self.split :] / size
         f = np.where(self.held, 0.0, f)
-        u, p, history = saddle(self.operator, self.held, f, g, self.modes, rtol, _silent)
+        try:
+            u, p, history = saddle(self.operator, self.held, f, g, self.modes, rtol, _silent)
+        except NotConverged as stopped:
+            raise _unfound(stopped, self.operator.net.degree) from stopped
         return Correction(np.concatenate([u.ravel(), p]) * size, len(history) - 1)
+
+
+def _unfound(stopped: NotConverged, degree: int, helps: str = "") -> NotConverged:
+    """Errors are iterated for, whatever solved the solution: another solver is no advice here."""
+    return NotConverged(
+        f"the error of a solution is looked for by iterations, in degree {degree} here, and "
+        f"{counted(len(stopped.history) - 1, 'iteration')} left {stopped.history[-1]:.3g} of the "
+        f"residual. What helps: {helps}tets that are less flat (bezsoma mesh info), a lower "
+        "degree, materials that differ less",
+        stopped.history,
+    )
 
 
 def _silent(iteration: int, residual: float) -> None:

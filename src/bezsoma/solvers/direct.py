@@ -13,7 +13,7 @@ from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.assembled import BlockMatrix
 from bezsoma.equations.displacement import Equations
 from bezsoma.errors import InputError, NotConverged, counted
-from bezsoma.solvers.factors import Waiting, factored
+from bezsoma.solvers.factors import Waiting, factored, too_large
 from bezsoma.solvers.krylov import Report, length
 
 DIRECT_UP_TO = 3000
@@ -44,11 +44,13 @@ def why_iterated(solver: str) -> str:
     return "since that is quickest" if solver == "auto" else "as asked for"
 
 
-def why_factored(stopped: NotConverged, free: int) -> str:
-    """Why they were given up, for the summary."""
-    done = counted(len(stopped.history) - 1, "iteration")
-    left = f"{stopped.history[-1]:.1e} of the residual and {free} unknowns are few"
-    return f"since {done} left {left}"
+def why_factored(stopped: NotConverged, few: int, free: int) -> str:
+    """Why they were given up, for the summary: all were done, or rounding had the upper hand."""
+    done, left = len(stopped.history) - 1, f"{stopped.history[-1]:.1e} of the residual"
+    what = f"{counted(done, 'iteration')} left {left}"
+    if done < few:
+        what = f"iterations came no farther than {left}"
+    return f"since {what} and {free} unknowns are few"
 
 
 def direct(
@@ -67,7 +69,19 @@ def direct(
     SuperLU factors: see `factored`, which says what `waiting` is.
     """
     free = np.flatnonzero(~equations.held.ravel())
-    solve = _solver(matrix, free, waiting)
+    try:
+        return _refined(equations, free, _solver(matrix, free, waiting), b, report)
+    except MemoryError as full:
+        raise too_large(len(free), "multigrid") from full
+
+
+def _refined(
+    equations: Equations,
+    free: Ints,
+    solve: Callable[[Floats], Floats],
+    b: Floats,
+    report: Report | None,
+) -> tuple[Floats, list[float]]:
     whole = length(b)
     x, r, history = np.zeros_like(b), b, [1.0]
     for step in range(1, REFINEMENTS + 1):
@@ -104,9 +118,11 @@ def _solver(matrix: BlockMatrix, free: Ints, waiting: Waiting | None) -> Callabl
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
         )
-    except MemoryError as full:
-        raise InputError(
-            f"the factors of {len(free)} unknowns are more than the direct solver can hold or "
-            "count; use solver='multigrid'"
-        ) from full
+    except RuntimeError as singular:
+        raise NotConverged(
+            f"the matrix of {len(free)} unknowns is singular to rounding ({singular}): look for "
+            "tets that are almost flat, nu very close to 1/2 (which Body(..., "
+            "incompressible=True) is for), and materials of very unequal stiffness",
+            [1.0],
+        ) from singular
     return lambda r: scale * solve(scale * r)

@@ -59,10 +59,23 @@ def factored(
         raise
 
     def solve(b: Floats) -> Floats:
-        return np.asarray(_asked(child, _fitting(b, rows), None), dtype=np.float64)
+        given = _fitting(b, rows)
+        try:
+            return np.asarray(_asked(child, given, None), dtype=np.float64)
+        except BaseException:  # or what it still answers would be taken for the next answer
+            _end(child)
+            raise
 
     weakref.finalize(solve, _end, child)
     return solve
+
+
+def too_large(unknowns: int, instead: str) -> InputError:
+    """The refusal of factors that there is no memory for; another solver is named."""
+    return InputError(
+        f"the factors of {unknowns} unknowns are more than the direct solver can hold or count; "
+        f"use solver={instead!r}"
+    )
 
 
 def _fitting(b: Floats, rows: int) -> Floats:

@@ -27,6 +27,8 @@ LEAST_PIVOT = 1e-6
 LARGEST_SHIFT = 1e3
 MOST_ITERATIONS = 5000
 RESTARTS = 3
+WORTH = 1e-2
+"""What is left of a residual where a larger rtol may give an answer that is worth something."""
 ROUGH = 1e-4
 """How far the residual is followed by rough products before it is formed anew."""
 
@@ -62,7 +64,7 @@ class IncompleteCholesky:
 
     def __call__(self, r: Floats) -> Floats:
         """(L L^T)^-1 r (c, 3)."""
-        z = np.empty_like(r)
+        z = np.empty(r.shape)
         _core.solve_cholesky(self.starts, self.columns, self.below, self.inverse, r, z)
         return z
 
@@ -223,12 +225,17 @@ def _iterate(
             report(len(history) - 1, history[-1])
 
 
+def larger_rtol(left: float) -> str:
+    """The end of advice: it helps where little of the residual is left, not where much is."""
+    return ", or take a larger rtol" if left < WORTH else ""
+
+
 def _slow(history: list[float], rtol: float, most: int) -> str:
     return (
         f"conjugate gradients stand at {history[-1]:.3g} of the residual at zero free displacement "
         f"after {most} iterations; rtol = {rtol:g} was asked for. Very flat tets, nu close to 1/2 "
-        "or very unequal materials slow them down; try solver='direct', a lower degree, or a "
-        "larger rtol"
+        "or very unequal materials slow them down: take incompressible=True close to 1/2, a lower "
+        f"degree, solver='direct'{larger_rtol(history[-1])}"
     )
 
 
@@ -236,5 +243,6 @@ def _indefinite(history: list[float]) -> str:
     return (
         f"conjugate gradients met a direction without positive energy in iteration {len(history)}, "
         f"at a relative residual of {history[-1]:.3g}: rounding has the upper hand. Look for tets "
-        "that are almost flat and for nu very close to 1/2, or try solver='direct'"
+        "that are almost flat and for nu very close to 1/2 (which Body(..., incompressible=True) "
+        "is for), or try solver='direct'"
     )

@@ -34,7 +34,7 @@ from bezsoma.solvers.direct import (
     why_factored,
     why_iterated,
 )
-from bezsoma.solvers.krylov import Report
+from bezsoma.solvers.krylov import Report, larger_rtol
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.saddle import MOST_ITERATIONS, saddle
 from bezsoma.solvers.saddle_direct import direct_saddle
@@ -64,7 +64,7 @@ def mixed_solution(
     except NotConverged as stopped:
         if few is None:
             raise
-        why = why_factored(stopped, equations.free)
+        why = why_factored(stopped, few, equations.free)
         K = _operator(body, equations.net, equations.pressure_net, "direct", threads, watch)
         found = _solved(replace(equations, operator=K), None, "direct", why, rtol, watch)
     u, p, method, history = found
@@ -213,9 +213,9 @@ def _iterated(
 def _stopped(left: float, rtol: float) -> str:
     return (
         f"the direct solver is left with {left:.3g} of the residual at zero free displacement, and "
-        f"rtol = {rtol:g} was asked for: rounding stops it there. Take a larger rtol, or look for "
-        "tets that are almost flat, pressures that hardly anything determines (tets all four "
-        "vertices of which are prescribed: solve(unlocked(body))), and very unequal materials"
+        f"rtol = {rtol:g} was asked for: rounding stops it there. Look for tets that are "
+        "almost flat, pressures that hardly anything determines (tets all four vertices of which "
+        f"are prescribed: solve(unlocked(body))), and very unequal materials{larger_rtol(left)}"
     )
 
 

@@ -12,9 +12,9 @@ from bezsoma.arrays import Bools, Floats, Int32s, Numbers
 from bezsoma.equations.displacement import Equations
 from bezsoma.equations.matrix_free import MatrixFree
 from bezsoma.equations.threads import thread_count
-from bezsoma.errors import NotConverged
+from bezsoma.errors import NotConverged, counted
 from bezsoma.mesh.control_net import ControlNet
-from bezsoma.solvers.krylov import Report, length
+from bezsoma.solvers.krylov import Report, larger_rtol, length
 
 MOST_ITERATIONS = 5000
 
@@ -24,11 +24,12 @@ def preconditioner(operator: MatrixFree, held: Bools) -> _core.Multigrid:
 
         z = sum_e R_e^T K_ee^-1 R_e r + P B_1 P^T r
 
-    R_e picks the free controls inside entity e; P elevates from degree 1 to n; B_1 is a V-cycle
-    of smoothed aggregation on the matrix of degree 1. The blocks damp what is rough within a tet,
-    degree 1 carries what is smooth across many (additive methods of this kind: L. Pavarino,
-    Numer. Math. 66, 1994). Everything is float32 on a residual scaled to one, which
-    costs no iteration; held (c, 3) says which components are prescribed.
+    R_e picks the free controls inside entity e, but of a vertex takes moments with the function
+    that reaches from it along edges (docs/theory/fast.md); P elevates from degree 1 to n; B_1 is a
+    V-cycle of smoothed aggregation on the matrix of degree 1, at that degree all there is. The
+    blocks damp what is rough within a tet, degree 1 carries what is smooth across many (additive
+    methods of this kind: L. Pavarino, Numer. Math. 66, 1994). Everything is float32 on a residual
+    scaled to one, which costs no iteration; held (c, 3) says which components are prescribed.
     """
     stiff, parts = _parts(operator, held)
     return _core.Multigrid(operator.kernel, operator.walk(stiff), *parts)
@@ -45,7 +46,8 @@ def preconditioned(operator: MatrixFree, held: Bools) -> Callable[[Numbers], Num
     inverse = _core.Inverse(operator.walk(stiff), *parts, threads, operator.instructions)
 
     def z_of(r: Numbers) -> Numbers:
-        z, r = np.empty_like(r), np.ascontiguousarray(r)
+        r = np.ascontiguousarray(r)
+        z = np.empty_like(r)
         if r.dtype == np.float32:
             inverse.apply_single(r, z)
         else:
@@ -60,7 +62,7 @@ def _parts(
 ) -> tuple[float, tuple[Int32s | None, Floats, Bools, Bools]]:
     """A stiffness that counts as one, and what says where degree 1 is and what is held."""
     # Conjugate gradients do not feel a factor of the preconditioner; float32 does: of order one.
-    stiff = float(np.abs(operator.lame).max()) * operator.net.mesh.mean_size
+    stiff = operator.stiffest * operator.net.mesh.mean_size
     corners, places, held_vertices = degree_one(operator.net, held)
     return stiff, (corners, places, held, held_vertices)
 
@@ -107,7 +109,7 @@ def iterated(
     most: int = MOST_ITERATIONS,
 ) -> tuple[Floats, list[float]]:
     """What `multigrid` gives, by a preconditioner that was built before."""
-    x = np.zeros_like(b) if start is None else start.copy()
+    x = np.zeros(b.shape) if start is None else np.array(start, np.float64, order="C")
     history, residual, converged, indefinite, rounded = blocks.solve(
         b, x, length(b), rtol, most, report
     )
@@ -115,13 +117,15 @@ def iterated(
     if converged:
         return x, history
     how = "stand still, since rounding lets them come no further," if rounded else "are not done"
+    cause = "slow them down"
     if indefinite:
-        how = "met a direction without positive energy"
+        how = "met a direction without positive energy, by rounding,"
+        cause = "let rounding have the upper hand"
     raise NotConverged(
-        f"conjugate gradients {how} after {len(history) - 1} iterations, at {residual:.3g} of the "
-        f"residual at zero free displacement; rtol = {rtol:g} was asked for. Very flat tets, thin "
-        "shells, regions of very unequal stiffness or nu close to 1/2 slow them down: look at the "
-        "mesh (bezsoma mesh info), take a larger rtol, a lower degree, incompressible=True close "
-        "to 1/2, or solver='direct' on a small problem",
+        f"conjugate gradients {how} after {counted(len(history) - 1, 'iteration')}, at "
+        f"{residual:.3g} of the residual at zero free displacement; rtol = {rtol:g} was asked for. "
+        f"Very flat tets, thin shells, regions of very unequal stiffness or nu close to 1/2 {cause}"
+        ": look at the mesh (bezsoma mesh info), take a lower degree, incompressible=True close to "
+        f"1/2, solver='direct' on a small problem{larger_rtol(residual)}",
         history,
     )

@@ -10,7 +10,7 @@ from bezsoma.arrays import Bools, Floats, plain
 from bezsoma.equations.matrix_free import walk
 from bezsoma.equations.mixed_free import MixedFree
 from bezsoma.errors import NotConverged
-from bezsoma.solvers.krylov import Report
+from bezsoma.solvers.krylov import Report, larger_rtol
 from bezsoma.solvers.multigrid import degree_one
 
 MOST_ITERATIONS = 5000
@@ -61,9 +61,9 @@ def saddle(
     both relative to r, one a step; a step applies the form twice. Same bits for any number of
     threads.
     """
-    G, unit = float(operator.moduli[:, 0].max()), _unit(operator)
+    G, unit = operator.stiffest, _unit(operator)
     weight = 2 * G**2 / unit
-    f, u, p = np.where(held, 0.0, f), np.zeros_like(f), np.zeros_like(g)
+    f, u, p = np.where(held, 0.0, f), np.zeros(f.shape), np.zeros(g.shape)
     part = 1.0 if against is None else _size(f, g, weight) / _size(*against, weight)
     if part <= rtol:
         return u, p, [part]
@@ -88,7 +88,8 @@ def saddle(
         f"{residual:.3g} of the residual at the start at best; rtol = {rtol:g} was asked for. What "
         "slows them down is flat tets (a thin layer), stiffnesses that differ 1e4 times and more "
         "between neighbours, and tets with all four vertices held: look at the mesh (bezsoma mesh "
-        "info), take a larger rtol, a lower degree, or solver='direct' on a small problem",
+        "info), take a lower degree, solver='direct' on a small problem"
+        f"{larger_rtol(residual)}",
         history,
     )
 
@@ -100,7 +101,7 @@ def _size(f: Floats, g: Floats, weight: float) -> float:
 
 def _unit(operator: MixedFree) -> float:
     """G h, N/mm: by which the displacement's preconditioner is scaled to order one, for float32."""
-    return float(operator.moduli[:, 0].max()) * operator.net.mesh.mean_size
+    return operator.stiffest * operator.net.mesh.mean_size
 
 
 def _orthogonal(levels: Floats) -> Floats:

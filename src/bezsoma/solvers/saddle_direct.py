@@ -14,7 +14,7 @@ from bezsoma.equations.level import without_mean
 from bezsoma.equations.mixed import MixedEquations, MixedMatrix
 from bezsoma.errors import InputError, NotConverged
 from bezsoma.solvers.direct import LARGEST, REFINEMENTS
-from bezsoma.solvers.factors import Waiting, factored
+from bezsoma.solvers.factors import Waiting, factored, too_large
 from bezsoma.solvers.krylov import Report
 
 PIVOT = 0.1
@@ -57,7 +57,18 @@ def direct_saddle(
     afterwards: the equation of that control follows from the others. Refined as `direct` is.
     """
     parts = _scaled(equations, matrix)
-    solve = _solver(matrix, parts, waiting)
+    try:
+        return _refined(equations, parts, _solver(matrix, parts, waiting), report)
+    except MemoryError as full:
+        raise too_large(len(parts.free) + len(parts.kept), "saddle") from full
+
+
+def _refined(
+    equations: MixedEquations,
+    parts: _Scaled,
+    solve: Callable[[Floats], Floats],
+    report: Report | None,
+) -> tuple[Floats, Floats, list[float]]:
     u, p = equations.given.copy(), np.zeros(equations.pressure_net.count)
     r = parts.packed(*equations.residuals(u, p))
     whole, history = _length(r), [1.0]
@@ -110,11 +121,6 @@ def _solver(
     whole = csc_array(block_array([[K, B.T], [B, -M]]))
     try:
         return factored(whole, waiting, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=PIVOT)
-    except MemoryError as full:
-        raise InputError(
-            f"the factors of {whole.shape[0]} unknowns are more than the direct solver can hold or "
-            "count; use solver='saddle'"
-        ) from full
     except RuntimeError as singular:
         raise NotConverged(
             f"the matrix of {whole.shape[0]} displacements and pressures is singular ({singular}): "

@@ -30,7 +30,7 @@ from bezsoma.solvers.direct import (
     why_factored,
     why_iterated,
 )
-from bezsoma.solvers.krylov import conjugate_gradients, incomplete_cholesky
+from bezsoma.solvers.krylov import conjugate_gradients, incomplete_cholesky, larger_rtol
 from bezsoma.solvers.memory import refuse_what_does_not_fit
 from bezsoma.solvers.mixed import advice, mixed_solution
 from bezsoma.solvers.multigrid import MOST_ITERATIONS, multigrid
@@ -89,8 +89,9 @@ def solve(
             to: for a linear body relative to that at zero free displacement, 1e-8 where not given;
             for others relative to the larger of internal and applied forces, the work of the
             residual likewise, 1e-10 where not given.
-        threads: how many; None takes the environment's BEZSOMA_THREADS, or all cores. The answer
-            of every solver but SuperLU's own arithmetic has the same bits for any number.
+        threads: how many; None takes the environment's BEZSOMA_THREADS, or all cores that this
+            process may use, as its affinity and its control groups say. The answer of every solver
+            but SuperLU's own arithmetic has the same bits for any number.
         steps: for a body that is not linear, in how many steps the load is put on: a number, the
             fractions of the load ending with 1, or "auto": the whole at once, halved where no
             equilibrium is found, and longer again where it is found soon. Steps that are given
@@ -136,7 +137,7 @@ def solve(
     except NotConverged as stopped:
         if few is None:
             raise
-        why = why_factored(stopped, equations.free)
+        why = why_factored(stopped, few, equations.free)
         K = _stiffness(body, equations.net, "direct", number, watch)
         equations = replace(equations, stiffness=K)
         found = _solved(equations, None, "direct", why, rtol, watch)
@@ -244,9 +245,9 @@ def _directly(
     if not history[-1] <= rtol:
         raise NotConverged(
             f"the direct solver is left with {history[-1]:.3g} of the residual at zero free "
-            f"displacement, and rtol = {rtol:g} was asked for: rounding stops it there. Take a "
-            "larger rtol, or look for tets that are almost flat, nu very close to 1/2 (which "
-            "Body(..., incompressible=True) is for), and materials of very unequal stiffness",
+            f"displacement, and rtol = {rtol:g} was asked for: rounding stops it there. Look for "
+            "tets that are almost flat, nu very close to 1/2 (which Body(..., incompressible=True) "
+            f"is for), and materials of very unequal stiffness{larger_rtol(history[-1])}",
             history,
         )
     return _Found(x, "direct (SuperLU, scaled and refined)", history)

@@ -16,7 +16,7 @@ from bezsoma.equations.pointwise import Pointwise, Tangent
 from bezsoma.equations.tangent_matrix import tangent_matrix
 from bezsoma.errors import NotConverged
 from bezsoma.solvers.bicgstab import stabilised
-from bezsoma.solvers.factors import Waiting, factored
+from bezsoma.solvers.factors import Waiting, factored, too_large
 from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.kept import Kept
 from bezsoma.solvers.krylov import conjugate_gradients
@@ -47,17 +47,19 @@ class Factored:
         scale = np.ones(len(b)) if self.scale is None else self.scale
         S = diags_array(scale[self.free])
         part = csc_array(S @ self.matrix[self.free][:, self.free] @ S)
+        dx = np.zeros_like(b)
+        right = (scale * b)[self.free]
         try:
             solve = factored(part, self.waiting)
+            dx[self.free] = solve(right)
+            dx[self.free] += solve(right - part @ dx[self.free])
         except RuntimeError as singular:
             raise Breakdown(
                 "the tangent is singular: the body has a motion that nothing resists, as where it "
                 "buckles or its law loses ellipticity"
             ) from singular
-        dx = np.zeros_like(b)
-        right = (scale * b)[self.free]
-        dx[self.free] = solve(right)
-        dx[self.free] += solve(right - part @ dx[self.free])
+        except MemoryError as full:
+            raise too_large(len(self.free), "multigrid") from full
         if not np.isfinite(dx).all():
             raise Breakdown("the tangent is singular to rounding")
         return Correction(scale * dx, 1)
