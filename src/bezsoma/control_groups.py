@@ -17,12 +17,13 @@ def groups(kind: str) -> Iterator[Path]:
     """
     yield from (GROUPS, GROUPS / kind)
     try:
-        lines = OWN_GROUPS.read_text().splitlines()
+        lines = OWN_GROUPS.read_text(errors="surrogateescape").splitlines()
     except OSError:
         return
     for line in lines:
         _, kinds, path = line.split(":", 2)
+        roots = dict.fromkeys((GROUPS / kind, GROUPS / kinds)) if kinds else (GROUPS,)
         if not kinds or kind in kinds.split(","):
-            root = GROUPS / kind if kinds else GROUPS
-            own = root / path.lstrip("/")
-            yield from (folder for folder in (own, *own.parents) if root in folder.parents)
+            for root in roots:
+                own = root / path.lstrip("/")
+                yield from (folder for folder in (own, *own.parents) if root in folder.parents)

@@ -4,7 +4,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
-#include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -43,7 +42,7 @@ namespace {
 
 using bezsoma::handed_over, bezsoma::In, bezsoma::Out, bezsoma::require, bezsoma::Vectors,
     bezsoma::Walk, bezsoma::listen_to_signals, bezsoma::numbered_by_walk, bezsoma::Scalars,
-    bezsoma::Turn, bezsoma::Corners, bezsoma::Inverse, bezsoma::Outside, bezsoma::Inside;
+    bezsoma::Turn, bezsoma::Corners, bezsoma::Inverse, bezsoma::Outside, bezsoma::Report;
 
 /// gradients, volumes, lambda and mu of the same tets.
 struct Tets {
@@ -377,19 +376,16 @@ public:
                           &k.form().chunks(), k.kernels(), k.team(), k.turn()) {}
 
     auto solve(In<double, -1, 3> f, Vectors x, double reference, double rtol, int most,
-               const std::function<void(int, double)> &report) {
+               const nb::callable &report) {
         require(f.size() == inverse_.held.size() && x.size() == inverse_.held.size(),
                 "f and x must have one row a control");
         bezsoma::Convergence found;
         {
             const Outside released;
             const Turn turn(k_.turn());
-            found = bezsoma::conjugate_gradients(
-                k_.form(), inverse_.search(k_.team()), inverse_.held.data(), f.data(), x.data(),
-                reference, rtol, most, k_.team(), [&](int iteration, double residual) {
-                    const Inside held;
-                    report(iteration, residual);
-                });
+            found = bezsoma::conjugate_gradients(k_.form(), inverse_.search(k_.team()),
+                                                 inverse_.held.data(), f.data(), x.data(),
+                                                 reference, rtol, most, k_.team(), Report(report));
         }
         return told(found);
     }
@@ -424,8 +420,7 @@ public:
     }
 
     auto solve(In<double, -1, 3> f, In<double, -1> g, Vectors u, Scalars p, double unit,
-               double volume_weight, double rtol, int most,
-               const std::function<void(int, double)> &report) {
+               double volume_weight, double rtol, int most, const nb::callable &report) {
         require(form_.fits(f, g) && form_.fits(u, p), "f, u and g, p must have one row a control");
         bezsoma::Convergence found;
         {
@@ -435,10 +430,7 @@ public:
             found = bezsoma::saddle(
                 form_.form(), search, *pressure_,
                 {inverse_.held.data(), f.data(), g.data(), unit, volume_weight, rtol, most},
-                u.data(), p.data(), form_.team(), [&](int iteration, double residual) {
-                    const Inside held;
-                    report(iteration, residual);
-                });
+                u.data(), p.data(), form_.team(), Report(report));
         }
         return told(found);
     }
@@ -459,8 +451,6 @@ NB_MODULE(_core, m) {
     // frame of an error that was kept) is told of a leak otherwise, in words that help no user.
     // What is held then goes with the process.
     nb::set_leak_warnings(false);
-    nb::module_::import_("atexit").attr("register")(
-        nb::cpp_function([] { bezsoma::gate.close(); }));
     m.doc() = "BezSoma's kernels over flat arrays";
     m.def("element_matrices", &element_matrices, "degree"_a, "gradients"_a, "volumes"_a, "lam"_a,
           "mu"_a);

@@ -4,58 +4,39 @@
 
 #include <nanobind/nanobind.h>
 
-#include <atomic>
 #include <chrono>
 #include <thread>
 
+#if defined(__GLIBCXX__)
+#include <cxxabi.h>
+#endif
+
 namespace bezsoma {
 
-/// Through which threads come back to the interpreter, until Python ends.
+/// What may ask for the interpreter: it does not return where Python has ended.
 ///
-/// Python ends whatever thread then still asks for the interpreter (a daemon in the midst of a
-/// solve) by unwinding its stack, which ends the whole process by abort where a destructor is met.
-/// Such threads stay where they are instead, as Python itself does with them from 3.14 on.
-class Gate {
-public:
-    /// Before a thread asks for the interpreter; it does not return in one that is too late.
-    void ask() {
-        ++asking_;
-        if (!closed_ || std::this_thread::get_id() == closer_)
-            return;
-        --asking_;
+/// Python before 3.14 ends whatever thread then asks (a daemon in the midst of a solve) by
+/// unwinding its stack, which ends the whole process by abort where a destructor is met. Such a
+/// thread stays here instead, as later versions have it stay, and goes with the process.
+template <class Ask> void staying(const Ask &ask) {
+#if defined(__GLIBCXX__)
+    try {
+        ask();
+    } catch (abi::__forced_unwind &) {
         for (;;)
             std::this_thread::sleep_for(std::chrono::hours(1));
     }
-
-    /// Once Python's own code goes on, or the interpreter is given back.
-    void passed() { --asking_; }
-
-    /// By the thread that ends Python, which has the interpreter. Those who asked before are let
-    /// through first, for a second at most: who is told of an iteration may take long.
-    void close() {
-        closer_ = std::this_thread::get_id();
-        closed_ = true;
-        const nanobind::gil_scoped_release for_others;
-        for (int i = 0; i < 1000 && asking_ > 0; ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-
-private:
-    std::atomic<int> asking_{0};
-    std::atomic<bool> closed_{false};
-    std::thread::id closer_;
-};
-
-inline Gate gate;
+#else // no thread is unwound where this is not the library
+    ask();
+#endif
+}
 
 /// The thread has not got the interpreter for as long as this lives.
 class Outside {
 public:
     Outside() : state_(PyEval_SaveThread()) {}
     ~Outside() {
-        gate.ask();
-        PyEval_RestoreThread(state_);
-        gate.passed();
+        staying([&] { PyEval_RestoreThread(state_); });
     }
     Outside(const Outside &) = delete;
     Outside &operator=(const Outside &) = delete;
@@ -68,18 +49,33 @@ private:
 class Inside {
 public:
     Inside() {
-        gate.ask();
-        state_ = PyGILState_Ensure();
+        staying([&] { state_ = PyGILState_Ensure(); });
     }
-    ~Inside() {
-        PyGILState_Release(state_);
-        gate.passed();
-    }
+    ~Inside() { PyGILState_Release(state_); }
     Inside(const Inside &) = delete;
     Inside &operator=(const Inside &) = delete;
 
 private:
-    PyGILState_STATE state_;
+    PyGILState_STATE state_{};
+};
+
+/// Tells a function of Python's, which the caller keeps, of an iteration. No frame of C++ may lie
+/// between the two, as those of nanobind would: what Python runs asks for the interpreter again.
+class Report {
+public:
+    explicit Report(const nanobind::callable &told) : told_(told.ptr()) {}
+
+    void operator()(int iteration, double residual) const {
+        const Inside held;
+        PyObject *answer = nullptr;
+        staying([&] { answer = PyObject_CallFunction(told_, "id", iteration, residual); });
+        if (!answer)
+            throw nanobind::python_error();
+        Py_DECREF(answer);
+    }
+
+private:
+    PyObject *told_;
 };
 
 } // namespace bezsoma

@@ -117,19 +117,10 @@ def test_what_is_still_held_when_python_ends_is_not_spoken_of() -> None:
     assert done.stdout == "neo_hooke\n" and not done.stderr
 
 
-LEFT_AT_WORK = {
-    "solves": "bz.solve(body, threads=2)",
-    "solves with a report": "bz.solve(body, threads=1, progress=lambda *told: None)",
-    "products": "operator @ net.points",
-    "topology": "bz.block(cells=9).faces_of_tet",
-}
-
-
-@pytest.mark.parametrize("work", LEFT_AT_WORK.values(), ids=LEFT_AT_WORK)
-def test_python_ends_in_peace_while_a_thread_is_at_work(work: str) -> None:
-    """A daemon in the midst of a solve, as servers and notebooks have them; at its own pace."""
-    text = f"""
-import atexit, threading, time
+LEFT_AT_WORK = """
+import atexit, os, threading, time
+stop = threading.Event()
+ATEXIT
 import numpy as np, bezsoma as bz
 from bezsoma.equations.matrix_free import MatrixFree
 
@@ -137,40 +128,70 @@ net = bz.ControlNet(bz.block(cells=6), 3)
 operator = MatrixFree(net, np.array([[0.6, 0.4]]), 1)
 sides = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]
 body = bz.Body(net.mesh, 3, bz.LinearElastic(1.0, 0.3), sides)
-begun = threading.Event()
+begun = threading.Barrier(THREADS + 1)
+
+def slowly(stage, done, note):
+    if stage == "solving":
+        time.sleep(1.3)
 
 def work():
-    while True:
-        {work}
-        begun.set()
+    bz.solve(body, threads=1)
+    begun.wait()
+    while not stop.is_set():
+        WORK
 
-for _ in range(2):
-    threading.Thread(target=work, daemon=True).start()
+workers = [threading.Thread(target=work, daemon=True) for _ in range(THREADS)]
+for worker in workers:
+    worker.start()
 begun.wait()
 time.sleep(0.1)
-print("done")
+START = time.perf_counter()
+END
 """
-    command = [sys.executable, "-S", "-c", prelude() + text]
-    for _ in range(3):
+AT_WORK = {
+    "solves": ("bz.solve(body, threads=2)", "", "print('done')"),
+    "solves with a report": ("bz.solve(body, threads=1, progress=print_no)", "", "print('done')"),
+    "solves with a slow report": ("bz.solve(body, progress=slowly)", "", "print('done')"),
+    "products": ("operator @ net.points", "", "print('done')"),
+    "topology": ("bz.block(cells=9).faces_of_tet", "", "print('done')"),
+    "waited for at the end": (
+        "operator @ net.points",
+        "atexit.register(lambda: (stop.set(), [w.join() for w in workers], print('done')))",
+        "",
+    ),
+    "its operator used at the end": (
+        "bz.solve(body, threads=1); operator @ net.points",
+        "atexit.register(lambda: print('done' if (operator @ net.points).any() else ''))",
+        "",
+    ),
+    "solved at the end": (
+        "bz.solve(body, threads=1)",
+        "atexit.register(lambda: print('done' if bz.solve(body).residual < 1e-8 else ''))",
+        "",
+    ),
+    "forks": (
+        "operator @ net.points",
+        "",
+        "import sys\nif not os.fork(): sys.exit(0)\n"
+        "print('done' if os.wait()[1] == 0 and time.perf_counter() - START < 20 else '')",
+    ),
+}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="forks, and how threads end, are of Linux")
+@pytest.mark.parametrize("threads", [1, 4])
+@pytest.mark.parametrize("name", AT_WORK)
+def test_python_ends_in_peace_while_threads_are_at_work(name: str, threads: int) -> None:
+    """Daemons in the midst of a solve, as servers and notebooks have them."""
+    work, before, end = AT_WORK[name]
+    text = LEFT_AT_WORK.replace("THREADS", str(threads)).replace("ATEXIT", before)
+    text = text.replace("WORK", work.replace("print_no", "lambda *told: None")).replace("END", end)
+    first, second = text.split("import numpy", 1)
+    whole = "\n".join([first, prelude(), "import numpy" + second])
+    command = [sys.executable, "-W", "ignore", "-S", "-c", whole]
+    for _ in range(2):
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=100)
         assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")
-
-
-def test_what_runs_when_python_ends_may_solve() -> None:
-    """Whatever was registered before BezSoma was imported runs after the core heard of the end."""
-    text = (
-        "import atexit\natexit.register(lambda: print(bz.solve(body).residual < 1e-8))\n"
-        + "import bezsoma as bz\n"
-        + 'sides = [bz.Fixed("bottom"), bz.Moved("top", translation=(0.1, 0, 0))]\n'
-        + "body = bz.Body(bz.block(cells=3), 2, bz.LinearElastic(1.0, 0.3), sides)\n"
-        + "bz.solve(body)"
-    )
-    # The prelude imports the core: what is registered has to stand before it.
-    first, second = text.split("\n", 2)[:2], text.split("\n", 2)[2]
-    whole = "\n".join([*first, prelude(), second])
-    command = [sys.executable, "-S", "-c", whole]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=100)
-    assert (done.returncode, done.stdout, done.stderr) == (0, "True\n", "")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="threads are counted as on Linux")

@@ -169,17 +169,36 @@ pickle.load(sys.stdin.buffer)
 
 
 @pytest.mark.parametrize(
-    ("name", "other"), [("elastic", "multigrid"), ("mixed", "saddle"), ("nonlinear", "multigrid")]
+    ("name", "solver", "other"),
+    [
+        ("elastic", "direct", "multigrid"),
+        ("mixed", "direct", "saddle"),
+        ("nonlinear", "direct", "multigrid"),
+        ("nonlinear, mixed", "direct", "multigrid"),
+        ("nonlinear, mixed", "multigrid", "direct"),  # which factors the pressure's mass
+    ],
 )
 def test_a_process_that_ends_once_it_has_factored_is_told(
-    name: str, other: str, apart: list[Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str,
+    solver: str,
+    other: str,
+    apart: list[Any],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     script = tmp_path / "half.py"
     script.write_text(FACTORS_ONLY)
     monkeypatch.setattr(factors, "APART", script)
     with pytest.raises(InputError, match=f"can hold or count; use solver='{other}'"):
-        solve(BODIES[name], solver="direct")
-    assert apart[-1].returncode is not None
+        solve(BODIES[name], solver=solver)
+    assert apart[-1].wait(timeout=60) == 0
+
+
+def test_more_entries_than_superlu_counts_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(factors, "LARGEST", 1000)
+    for body in BODIES.values():
+        with pytest.raises(InputError, match="can hold or count"):
+            solve(body, solver="direct")
 
 
 def test_a_matrix_that_is_singular_to_rounding_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -360,7 +360,15 @@ QUOTAS = {
     "version 2, own": ({"job/step/cpu.max": "50000 100000"}, 1),
     "version 1": ({"cpu/job/cpu.cfs_quota_us": "400000", "cpu/job/cpu.cfs_period_us": "200000"}, 2),
     "version 1, none": ({"cpu/cpu.cfs_quota_us": "-1", "cpu/cpu.cfs_period_us": "100000"}, 1024),
+    "version 1, both in a name": (
+        {
+            "cpu,cpuacct/job/cpu.cfs_quota_us": "100000",
+            "cpu,cpuacct/job/cpu.cfs_period_us": "100000",
+        },
+        1,
+    ),
     "nothing readable": ({"cpu.max": "much"}, 1024),
+    "no number": ({"cpu.max": "inf 100000"}, 1024),
 }
 
 
@@ -424,7 +432,7 @@ for method, body in bodies.items():
     before, most, done = tasks(), 0, False
     watcher = threading.Thread(target=look)
     watcher.start()
-    for _ in range(5):
+    for _ in range(2):
         bz.solve(body, solver=method, threads=1)
     done = True
     watcher.join()

@@ -341,9 +341,10 @@ CORE_ERRORS = (
     Mutant(
         "threads that ask for Python's interpreter when it has ended",
         f"{CORE}/bindings_interpreter.hpp",
-        "closed_ = true;",
-        "closed_ = false;",
+        "abi::__forced_unwind &",
+        "std::bad_alloc &",
         TEAM,
+        compiled=True,
     ),
     Mutant(
         "parts joined by faces that are not found to be one",

@@ -469,8 +469,8 @@ PYTHON = (
     Mutant(
         "an error of the process that factors taken for an answer",
         f"{SOLVERS}/factors.py",
-        "            raise answer",
-        "            return answer",
+        "        raise answer",
+        "        return answer",
         FACTORS,
     ),
     Mutant(
@@ -500,6 +500,13 @@ PYTHON = (
         "z = np.empty(r.shape)",
         "z = np.empty_like(r)",
         ("tests/faults/test_core.py",),
+    ),
+    Mutant(
+        "a region without tets that weighs volumes against forces",
+        f"{SOLVERS}/nonlinear_mixed.py",
+        "met(self.stiffness, mesh.region).mean()",
+        "self.stiffness.mean()",
+        ("tests/faults/test_hard_problems.py",),
     ),
     Mutant(
         "a region without tets that scales the preconditioner",

@@ -174,7 +174,7 @@ def _rows(x: npt.ArrayLike, kind: npt.DTypeLike) -> tuple[npt.NDArray[Any], tupl
 
 
 def met(rows: Floats, region: Ints) -> Floats:
-    """Of rows (regions, m) those whose regions have tets; region (t,).
+    """Of rows (regions, ...) those whose regions have tets; region (t,).
 
     >>> met(np.array([[1.0], [1e9], [2.0]]), np.array([0, 2, 2])).tolist()
     [[1.0], [2.0]]

@@ -42,9 +42,9 @@ def _quota(folder: Path) -> float | None:
     for files in (("cpu.max",), ("cpu.cfs_quota_us", "cpu.cfs_period_us")):  # of version 2 and 1
         try:
             given, period = " ".join((folder / file).read_text() for file in files).split()
-            if float(given) > 0:  # -1 where there is none in version 1
-                return float(given) / float(period)
-        except (OSError, ValueError, ZeroDivisionError):  # not there, or "max"
+            if int(given) > 0 and int(period) > 0:  # -1 where there is none in version 1
+                return int(given) / int(period)
+        except (OSError, ValueError):  # not there, or "max"
             continue
     return None
 

@@ -12,7 +12,7 @@ from scipy.sparse import csc_array, diags_array
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.assembled import BlockMatrix
 from bezsoma.equations.displacement import Equations
-from bezsoma.errors import InputError, NotConverged, counted
+from bezsoma.errors import NotConverged, counted
 from bezsoma.solvers.factors import Waiting, factored, too_large
 from bezsoma.solvers.krylov import Report, length
 
@@ -21,8 +21,6 @@ DIRECT_UP_TO = 3000
 whatever nu and the tets are: a linear one where iterations do not come through soon, one of another
 law or under a pressure that follows always."""
 REFINEMENTS = 10
-LARGEST = 2**31 - 1
-"""SuperLU counts entries in 32 bits."""
 
 
 def before_factoring(solver: str, free: int, degree: int) -> int | None:
@@ -102,11 +100,6 @@ def _refined(
 
 
 def _solver(matrix: BlockMatrix, free: Ints, waiting: Waiting | None) -> Callable[[Floats], Floats]:
-    if matrix.blocks.size > LARGEST:
-        raise InputError(
-            f"the matrix has {matrix.blocks.size} entries, more than the direct solver can count "
-            f"({LARGEST}); use solver='multigrid'"
-        )
     scale = 1 / np.sqrt(matrix.diagonal.ravel()[free])
     part = matrix.scipy().tocsr()[free][:, free]
     S = diags_array(scale)

@@ -24,6 +24,8 @@ from bezsoma.errors import InputError
 
 HERE_UP_TO = 3000
 """Rows of a matrix that is factored in a fraction of a second: in this process."""
+LARGEST = 2**31 - 1
+"""SuperLU counts entries in 32 bits."""
 HEARS_EVERY = 0.1
 """Seconds after which whoever waits is told so."""
 APART = Path(__file__).with_name("factors_apart.py")
@@ -48,6 +50,8 @@ def factored(
     [1.0, 1.0]
     """
     rows = matrix.shape[0]
+    if matrix.nnz > LARGEST:
+        raise MemoryError(f"{matrix.nnz} entries are more than SuperLU counts")
     if rows <= HERE_UP_TO:
         factors = splu(matrix, **options)
         return lambda b: np.asarray(factors.solve(_fitting(b, rows)), dtype=np.float64)
@@ -59,12 +63,7 @@ def factored(
         raise
 
     def solve(b: Floats) -> Floats:
-        given = _fitting(b, rows)
-        try:
-            return np.asarray(_asked(child, given, None), dtype=np.float64)
-        except BaseException:  # or what it still answers would be taken for the next answer
-            _end(child)
-            raise
+        return np.asarray(_asked(child, _fitting(b, rows), None), dtype=np.float64)
 
     weakref.finalize(solve, _end, child)
     return solve
@@ -73,8 +72,8 @@ def factored(
 def too_large(unknowns: int, instead: str) -> InputError:
     """The refusal of factors that there is no memory for; another solver is named."""
     return InputError(
-        f"the factors of {unknowns} unknowns are more than the direct solver can hold or count; "
-        f"use solver={instead!r}"
+        f"{unknowns} unknowns are more than the direct solver can hold or count; use "
+        f"solver={instead!r}"
     )
 
 
@@ -109,16 +108,19 @@ def _asked(child: subprocess.Popen[bytes], given: Any, waiting: Waiting | None) 
     answers: SimpleQueue[Any] = SimpleQueue()
     Thread(target=lambda: answers.put(_exchanged(child, given)), daemon=True).start()
     start = perf_counter()
-    while True:
+    answer: Any = answers
+    while answer is answers:  # nothing so far
         try:
             answer = answers.get(timeout=HEARS_EVERY)
         except Empty:
             if waiting:
                 waiting(perf_counter() - start)
-            continue
-        if isinstance(answer, BaseException):
-            raise answer
-        return answer
+        except BaseException:  # or this answer would be taken for that to the next question
+            _end(child)
+            raise
+    if isinstance(answer, BaseException):
+        raise answer
+    return answer
 
 
 def _exchanged(child: subprocess.Popen[bytes], given: Any) -> Any:

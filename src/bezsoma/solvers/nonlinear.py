@@ -229,7 +229,10 @@ def _mixed(
     waiting: Waiting | None,
 ) -> Form:
     problem = mixed_problem(body, equations, exactness, threads)
-    tangent = factored_mixed(problem, waiting) if chosen == "direct" else applied(problem, threads)
+    if chosen == "direct":
+        tangent = factored_mixed(problem, waiting)
+    else:
+        tangent = applied(problem, threads, waiting)
 
     def pressure(x: Floats) -> Field | BrokenField:
         p, net = frozen(level(problem, problem.parted(x)[1])), problem.internal.pressure_net

@@ -16,7 +16,7 @@ from bezsoma.equations.enclosed import refuse_changed_volume
 from bezsoma.equations.internal import core_law
 from bezsoma.equations.level import undetermined, without_mean
 from bezsoma.equations.locked import refuse_undetermined
-from bezsoma.equations.matrix_free import MatrixFree
+from bezsoma.equations.matrix_free import MatrixFree, met
 from bezsoma.equations.mixed import pressure_mass
 from bezsoma.equations.mixed_pointwise import MixedPointwise
 from bezsoma.equations.mixed_pointwise_free import PointwiseMixed
@@ -26,7 +26,7 @@ from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import FunctionLaw, MixedLaw, shear_at_rest
 from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.torn import pressure_net
-from bezsoma.solvers.factors import Waiting, factored
+from bezsoma.solvers.factors import Waiting, factored, too_large
 from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.multigrid import preconditioned
 from bezsoma.solvers.newton import Balance, Breakdown, Correction, Linearised, System, extent
@@ -68,7 +68,8 @@ class MixedProblem:
     @property
     def weight(self) -> float:
         """Takes a volume that is out of balance, mm3, to a force: G over the size of a tet."""
-        return float(self.stiffness.mean()) / self.equations.net.mesh.mean_size
+        mesh = self.equations.net.mesh
+        return float(met(self.stiffness, mesh.region).mean()) / mesh.mean_size
 
     def parted(self, x: Floats) -> tuple[Floats, Floats]:
         """U (c, 3) and p (cp,)."""
@@ -242,16 +243,24 @@ class AppliedMixed:
             y, count = minimal_residual(apply, precondition, scale * b, rtol, MOST_PRODUCTS)
         except NotConverged as failure:
             raise Breakdown(str(failure)) from failure
+        except MemoryError as full:
+            raise too_large(len(b) - split, "direct") from full
         return Correction(scale * y, count)
 
 
-def applied(problem: MixedProblem, threads: int) -> Callable[[Floats, float], Linearised]:
+def applied(
+    problem: MixedProblem, threads: int, waiting: Waiting | None
+) -> Callable[[Floats, float], Linearised]:
     """What gives the tangent at x and a fraction of the load, without a matrix."""
     net, pressures = problem.equations.net, problem.internal.pressure_net
     G = problem.stiffness
     operator = MatrixFree(net, frozen(np.stack([G, G], axis=1)), threads)
     blocks = preconditioned(operator, problem.equations.held)
-    mass = factored(csc_array(pressure_mass(pressures, 1 / G[net.mesh.region])))
+    whole = csc_array(pressure_mass(pressures, 1 / G[net.mesh.region]))
+    try:
+        mass = factored(whole, waiting)
+    except MemoryError as full:
+        raise too_large(pressures.count, "direct") from full
 
     def at(x: Floats, fraction: float) -> Linearised:
         follow = problem.equations.follow(problem.parted(x)[0], fraction)

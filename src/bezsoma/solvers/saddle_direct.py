@@ -12,8 +12,8 @@ from scipy.sparse import block_array, csc_array, diags_array
 from bezsoma.arrays import Floats, Ints
 from bezsoma.equations.level import without_mean
 from bezsoma.equations.mixed import MixedEquations, MixedMatrix
-from bezsoma.errors import InputError, NotConverged
-from bezsoma.solvers.direct import LARGEST, REFINEMENTS
+from bezsoma.errors import NotConverged
+from bezsoma.solvers.direct import REFINEMENTS
 from bezsoma.solvers.factors import Waiting, factored, too_large
 from bezsoma.solvers.krylov import Report
 
@@ -109,11 +109,6 @@ def _scaled(equations: MixedEquations, matrix: MixedMatrix) -> _Scaled:
 def _solver(
     matrix: MixedMatrix, parts: _Scaled, waiting: Waiting | None
 ) -> Callable[[Floats], Floats]:
-    if matrix.shear.blocks.size + 2 * matrix.coupling.nnz > LARGEST:
-        raise InputError(
-            f"the matrix has more entries than the direct solver can count ({LARGEST}); use "
-            "solver='saddle'"
-        )
     su, sp = diags_array(parts.scale_u), diags_array(parts.scale_p)
     K = su @ matrix.shear.scipy().tocsr()[parts.free][:, parts.free] @ su
     B = sp @ matrix.coupling[parts.kept][:, parts.free] @ su
