@@ -227,7 +227,7 @@ def _iterate(
 
 def larger_rtol(left: float) -> str:
     """The end of advice: it helps where little of the residual is left, not where much is."""
-    return ", or take a larger rtol" if left < WORTH else ""
+    return "; a larger rtol serves too" if left < WORTH else ""
 
 
 def _slow(history: list[float], rtol: float, most: int) -> str:
@@ -235,7 +235,7 @@ def _slow(history: list[float], rtol: float, most: int) -> str:
         f"conjugate gradients stand at {history[-1]:.3g} of the residual at zero free displacement "
         f"after {most} iterations; rtol = {rtol:g} was asked for. Very flat tets, nu close to 1/2 "
         "or very unequal materials slow them down: take incompressible=True close to 1/2, a lower "
-        f"degree, solver='direct'{larger_rtol(history[-1])}"
+        f"degree, or solver='direct'{larger_rtol(history[-1])}"
     )
 
 

@@ -126,6 +126,6 @@ def iterated(
         f"{residual:.3g} of the residual at zero free displacement; rtol = {rtol:g} was asked for. "
         f"Very flat tets, thin shells, regions of very unequal stiffness or nu close to 1/2 {cause}"
         ": look at the mesh (bezsoma mesh info), take a lower degree, incompressible=True close to "
-        f"1/2, solver='direct' on a small problem{larger_rtol(residual)}",
+        f"1/2, or solver='direct' on a small problem{larger_rtol(residual)}",
         history,
     )

@@ -26,7 +26,7 @@ from bezsoma.mechanics.body import Body
 from bezsoma.mechanics.laws import FunctionLaw, MixedLaw, shear_at_rest
 from bezsoma.mechanics.materials import LinearElastic
 from bezsoma.mesh.torn import pressure_net
-from bezsoma.solvers.factors import Waiting, factored, too_large
+from bezsoma.solvers.factors import Waiting, factored
 from bezsoma.solvers.gmres import minimal_residual
 from bezsoma.solvers.multigrid import preconditioned
 from bezsoma.solvers.newton import Balance, Breakdown, Correction, Linearised, System, extent
@@ -244,7 +244,7 @@ class AppliedMixed:
         except NotConverged as failure:
             raise Breakdown(str(failure)) from failure
         except MemoryError as full:
-            raise too_large(len(b) - split, "direct") from full
+            raise _mass_too_large(len(b) - split) from full
         return Correction(scale * y, count)
 
 
@@ -260,13 +260,20 @@ def applied(
     try:
         mass = factored(whole, waiting)
     except MemoryError as full:
-        raise too_large(pressures.count, "direct") from full
+        raise _mass_too_large(pressures.count) from full
 
     def at(x: Floats, fraction: float) -> Linearised:
         follow = problem.equations.follow(problem.parted(x)[0], fraction)
         return AppliedMixed(problem, x, follow, blocks, mass)
 
     return at
+
+
+def _mass_too_large(pressures: int) -> InputError:
+    return InputError(
+        f"the mass of {pressures} pressures is more than can be factored, held or counted; take a "
+        "lower degree or a coarser mesh"
+    )
 
 
 def level(problem: MixedProblem, p: Floats) -> Floats:

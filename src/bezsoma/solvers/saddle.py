@@ -88,7 +88,7 @@ def saddle(
         f"{residual:.3g} of the residual at the start at best; rtol = {rtol:g} was asked for. What "
         "slows them down is flat tets (a thin layer), stiffnesses that differ 1e4 times and more "
         "between neighbours, and tets with all four vertices held: look at the mesh (bezsoma mesh "
-        "info), take a lower degree, solver='direct' on a small problem"
+        "info), take a lower degree, or solver='direct' on a small problem"
         f"{larger_rtol(residual)}",
         history,
     )
