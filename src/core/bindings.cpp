@@ -451,6 +451,7 @@ NB_MODULE(_core, m) {
     // frame of an error that was kept) is told of a leak otherwise, in words that help no user.
     // What is held then goes with the process.
     nb::set_leak_warnings(false);
+    bezsoma::End::prepare();
     m.doc() = "BezSoma's kernels over flat arrays";
     m.def("element_matrices", &element_matrices, "degree"_a, "gradients"_a, "volumes"_a, "lam"_a,
           "mu"_a);

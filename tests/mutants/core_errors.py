@@ -341,10 +341,9 @@ CORE_ERRORS = (
     Mutant(
         "threads that ask for Python's interpreter when it has ended",
         f"{CORE}/bindings_interpreter.hpp",
-        "abi::__forced_unwind &",
-        "std::bad_alloc &",
+        "near_ = true;",
+        "near_ = false;",
         TEAM,
-        compiled=True,
     ),
     Mutant(
         "parts joined by faces that are not found to be one",
