@@ -12,13 +12,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezsoma import control_groups
 from bezsoma.equations.stress import swelling
 from bezsoma.errors import InputError
 from bezsoma.mechanics import Body, Fixed, LinearElastic, Moved, NeoHooke
 from bezsoma.mesh import ControlNet, TetMesh, block
 from bezsoma.mesh.field import Field
 from bezsoma.solvers import memory, solve
+from group_files import laid
 from processes import prelude
 
 FACTOR = 2.0
@@ -218,13 +218,8 @@ def test_what_a_control_group_leaves(
     files: dict[str, str], left: int | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A container or a batch job may have less than the machine; what only caches files is free."""
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
-    own = tmp_path / "own"
-    own.write_text("1:name=systemd:/\n2:cpu,memory:/x\n3:memory:/job\n0::/job/step\n")
-    monkeypatch.setattr(control_groups, "GROUPS", tmp_path)
-    monkeypatch.setattr(control_groups, "OWN_GROUPS", own)
+    own = "1:name=systemd:/\n2:cpu,memory:/x\n3:memory:/job\n0::/job/step\n"
+    laid(files, own, tmp_path, monkeypatch)
     there = memory.available()
     assert there == left if left is not None else there is not None and there > 2**26
 

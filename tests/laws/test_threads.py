@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import bezsoma as bz
-from bezsoma import _core, bernstein, control_groups
+from bezsoma import _core, bernstein
 from bezsoma.arrays import Floats
 from bezsoma.equations.assembled import assembled
 from bezsoma.equations.boundary import prescribed
@@ -34,6 +34,7 @@ from bezsoma.refinement.products import displacement_product
 from bezsoma.solvers import Solution, solve
 from bezsoma.solvers.multigrid import preconditioned, preconditioner
 from cases.written import case_file
+from group_files import laid
 from processes import prelude
 
 THREADS = (1, 2, 5)
@@ -377,13 +378,8 @@ def test_all_cores_are_those_that_there_is_time_for(
     files: dict[str, str], allowed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A container or a batch job may have fewer than the machine: more threads wait for turns."""
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text + "\n")
-    own = tmp_path / "own"
-    own.write_text("1:name=systemd:/\n2:cpu,cpuacct:/job\n0::/job/step\n")
-    monkeypatch.setattr(control_groups, "GROUPS", tmp_path)
-    monkeypatch.setattr(control_groups, "OWN_GROUPS", own)
+    lines = {name: text + "\n" for name, text in files.items()}
+    laid(lines, "1:name=systemd:/\n2:cpu,cpuacct:/job\n0::/job/step\n", tmp_path, monkeypatch)
     quota.cache_clear()
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(7)), raising=False)
     try:

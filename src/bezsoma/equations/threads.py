@@ -33,7 +33,7 @@ def quota() -> int:
 
     1024 where they do not limit it.
     """
-    given = [cores for folder in groups("cpu") if (cores := _quota(folder)) is not None]
+    given = [time for folder in groups("cpu") if (time := _quota(folder)) is not None]
     return math.ceil(min(given, default=MOST_THREADS))
 
 
